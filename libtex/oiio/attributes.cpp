@@ -132,12 +132,13 @@ void apply_mark(const ImageSpec& spec, Wanted& wanted) {
 // The encoding of these texels; nullopt if pack() makes none such. Files without formats of three channels hold those
 // with a fourth one.
 std::optional<Encoding> encoding_of(const Texture& texture) {
-    for (const bool widened : {false, true}) {
+    for (const bool widened :
+         {true, false}) {  // of the encodings with alpha in 16 bits or floats, nothing else is read
         for (const Named<Encoding>& row : kEncodingNames) {
             const EncodingInfo encoding = encoding_info(row.value);
             const FormatInfo info = format_info(encoding.format);
             const bool plain = info.channels == 3 && !info.has_blocks();
-            if (widened && !plain) continue;
+            if (widened && (!plain || info.bits == 8)) continue;
             const auto format = widened ? format_of(info.sample, info.bits, 4) : encoding.format;
             if (format == texture.format && layout_name(encoding.swizzle) == layout_name(texture.swizzle))
                 return row.value;

@@ -163,7 +163,7 @@ void add_texture(Module& module) {
         .property("srgb", "bool", "The file declares its colours as sRGB.",
                   [](const Texture& self) { return self.srgb; })
         .property("trailing_bytes", "int", "Bytes after the last level, which were not read.",
-                  [](const Texture& self) { return PyLong_FromUnsignedLongLong(self.trailing_bytes); })
+                  [](const Texture& self) { return self.trailing_bytes; })
         .property("remarks", "list[str]", "Other faults that the reader ignored, one sentence each.",
                   [](const Texture& self) { return strs_of(self.remarks); })
         .method("__repr__", "(self) -> str",

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tex/tex.h>
@@ -27,5 +28,13 @@ MipChain bumpy_chain(Extent extent);
 
 // All pixels of a level as floats, interleaved; empty if the plug-in reports an error.
 std::vector<float> pixels_of(OIIO::ImageInput& input, int level);
+
+// The encoding that the plug-in states for files of an encoding: what is in an alpha of 16 bits or floats is not read.
+inline std::string read_as(std::string_view encoding) {
+    return encoding == "rgba16"    ? "rgb16"
+           : encoding == "rgba16f" ? "half"
+           : encoding == "rgba32f" ? "float"
+                                   : std::string(encoding);
+}
 
 }  // namespace tex::oiio
