@@ -166,7 +166,12 @@ TEST_F(Others, SixteenBitsStaySixteen) {
     run("scale-normals nh.exr -o s.exr --scale 2");
     EXPECT_TRUE(equal("s.exr", 3, "deep.png", 0, 0.0f));
     const Ran lost = shell(scratch_, "pack-normals nh.exr -o s.png --no-sync");
-    EXPECT_NE(lost.err.find("--format rgba32f keeps A"), std::string::npos) << lost.err;
+    EXPECT_NE(lost.err.find("--format rgba16 keeps A"), std::string::npos) << lost.err;
+    run("pack-normals nh.exr -o s.png --format rgba16");
+    EXPECT_TRUE(equal("s.png", 3, "deep.png", 0, 0.01f));
+    EXPECT_NE(shell(scratch_, "pack-normals nh.png -o s.exr --no-sync").err.find("--format rgba16f keeps A"),
+              std::string::npos);
+    run("pack-normals nh.png -o s.exr --format rgba16f");
 }
 
 // ImageMagick takes apart what we have put together, and we what it has: alpha is unassociated.

@@ -121,6 +121,9 @@ TEST_F(TransferPage, TakesColoursOfVertices) {
     EXPECT_LT(picture->planes[0].at(94, 1), 0.1f);
     does({"sheet.obj", "sheet.obj", "-o", "n.png", "--vertex-color-out", "white.png"});
     EXPECT_EQ(read_image(scratch_.path("white.png"))->planes[1].at(40, 40), 1.0f);
+    const Ran plain = run(scratch_, "transfer-normals",
+                          {"sheet.obj", "sheet.obj", "-o", "n.png", "--vertex-color-out", "white.png"});
+    EXPECT_NE(plain.err.find("no vertex colours, so that --vertex-color-out is white"), std::string::npos) << plain.err;
 }
 
 // A sphere of 2 n^2 triangles around (5, 0, 0), with a radius of 3.

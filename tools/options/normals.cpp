@@ -45,14 +45,23 @@ Encoding exact_encoding(const SourceInfo& input) {
     return info.bits == 16 ? Encoding::rgb16 : Encoding::rgb8;
 }
 
-// The name of the encoding that keeps alpha with as many bits.
-std::string_view alpha_encoding(const SourceInfo& input) {
+// The name of an encoding that keeps alpha in such files, with the bits of the input if there is one; empty if there is
+// none.
+std::string_view alpha_encoding(const SourceInfo& input, Container container) {
     const FormatInfo info = format_info(input.format);
+    std::string_view found;
+    int best = 0;
     for (const auto& row : kEncodingNames) {
+        if (!can_hold(row.value).alpha || !can_hold(container, row.value)) continue;
         const FormatInfo format = format_info(encoding_info(row.value).format);
-        if (can_hold(row.value).alpha && format.sample == info.sample && format.bits == info.bits) return row.name;
+        // As many bits, or a few more; else the most.
+        const int worth = (format.bits >= info.bits ? 1000 - format.bits : format.bits) +
+                          (format.bits == info.bits && format.sample == info.sample ? 1 : 0);
+        if (worth <= best) continue;
+        best = worth;
+        found = row.name;
     }
-    return name_of(kEncodingNames, Encoding::rgba8);
+    return found;
 }
 
 }  // namespace
@@ -189,12 +198,12 @@ void NormalsReader::warn_of_others(Job& job, const std::string& path, const Sour
     }
     const bool is_alpha = std::any_of(info.others.begin(), info.others.end(),
                                       [](const OtherChannel& other) { return other.name == 'A'; });
+    const std::string_view keeps = is_alpha ? alpha_encoding(info, job.task.container) : std::string_view();
     const bool is_one = names.size() == 1;
-    job.warn(
-        fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
-                    join(names, " and "), is_one && names[0].front() != 't' ? "holds" : "hold", is_one ? "is" : "are",
-                    is_alpha ? fmt::format("--format {} keeps A; ", alpha_encoding(info)) : ""),
-        path);
+    job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
+                         join(names, " and "), is_one && names[0].front() != 't' ? "holds" : "hold",
+                         is_one ? "is" : "are", keeps.empty() ? "" : fmt::format("--format {} keeps A; ", keeps)),
+             path);
 }
 
 Result<Source> NormalsReader::read(Job& job, const std::string& path, const Execution& execution,
