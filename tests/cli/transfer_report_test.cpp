@@ -119,8 +119,8 @@ TEST_F(TransferPage, TakesColoursOfVertices) {
     EXPECT_GT(picture->planes[0].at(1, 94), 0.9f);  // red at the lower left
     EXPECT_GT(picture->planes[2].at(94, 1), 0.9f);  // blue at the upper right
     EXPECT_LT(picture->planes[0].at(94, 1), 0.1f);
-    const Ran plain = run(scratch_, "transfer-normals",
-                          {"sheet.obj", "sheet.obj", "-o", "n.png", "--vertex-color-out", "white.png"});
+    const Ran plain =
+        run(scratch_, "transfer-normals", {"sheet.obj", "sheet.obj", "-o", "n.png", "--vertex-color-out", "white.png"});
     EXPECT_EQ(plain.code, 0);
     EXPECT_EQ(read_image(scratch_.path("white.png"))->planes[1].at(40, 40), 1.0f);
     EXPECT_NE(plain.err.find("no vertex colours, so that --vertex-color-out is white"), std::string::npos) << plain.err;
