@@ -122,6 +122,26 @@ TEST_F(Tiles, WrongOptionsAreRefused) {
     EXPECT_NE(none.err.find("no file has this name with numbers for {x} and {y}"), std::string::npos) << none.err;
 }
 
+// Sides that are powers of two: no texel of a smaller level reaches beyond its tile.
+TEST_F(Tiles, SmallerLevelsHaveTheBytesOfTheWholeToo) {
+    write_tiles([](int x, int y) { return fmt::format("h_{}_{}.r16", x, y); });
+    ASSERT_EQ(bake({"h_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.ktx2"}).code, 0);
+    ASSERT_EQ(bake({"whole.r16", "-o", "whole.ktx2"}).code, 0);
+    const auto whole = read_texture(scratch_.path("whole.ktx2")), tile = read_texture(scratch_.path("n_1_2.ktx2"));
+    ASSERT_TRUE(whole && tile);
+    for (int level = 0; level < 5; ++level) {
+        const auto of_whole = decode(*whole, level), of_tile = decode(*tile, level);
+        ASSERT_TRUE(of_whole && of_tile);
+        const int side = kSide >> level;
+        ASSERT_EQ(of_tile->extent(), (Extent{side, side}));
+        for (int j = 0; j < side; ++j)
+            EXPECT_EQ(std::memcmp(of_tile->planes[0].row(j), of_whole->planes[0].row(2 * side + j) + side,
+                                  static_cast<std::size_t>(side) * sizeof(float)),
+                      0)
+                << level;
+    }
+}
+
 // A rule of a manifest whose inputs are tiles; `more` are further steps.
 std::string manifest_of(const std::string& match, const std::string& tiles, const std::string& more = "") {
     return fmt::format(
