@@ -158,8 +158,8 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshe
     const auto guides = guides_.read(job, low_, low);
     if (!guides) return guides.error();
     guides->fill(inputs);
-    const bool is_plain = std::all_of(high.parts.begin(), high.parts.end(),
-                                      [](const MeshPart& part) { return part.colors.empty(); });
+    const bool is_plain =
+        std::all_of(high.parts.begin(), high.parts.end(), [](const MeshPart& part) { return part.colors.empty(); });
     if (maps_.wants_vertex_colors() && is_plain)
         job.warn("the high mesh has no vertex colours, so that --vertex-color-out is white");
     const auto pictures = pictures_.read(job, high);
