@@ -274,7 +274,7 @@ void find_copies_target(const CopySearch& search, FoundCopies& found) {
         std::uint32_t all = is_xx | is_yy | is_xy | is_yx | pairs;
         if (all == 0) continue;
         while (all != 0) {
-            const int lane = std::bit_width(all) - 1;
+            const int lane = static_cast<int>(std::bit_width(all)) - 1;
             const auto has = [&](std::uint32_t bits) { return (bits >> lane & 1u) != 0; };
             add_block_at(search, i + lane, {{{has(is_xx), has(is_xy)}, {has(is_yx), has(is_yy)}}, has(pairs)}, found);
             all &= ~(1u << lane);
