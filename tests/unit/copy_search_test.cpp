@@ -191,7 +191,8 @@ TEST(CopySearch, FindsTheCheapestOnEveryTarget) {
             std::mt19937 random(static_cast<unsigned>(count));
             const Halves tables[2] = {{kind, count, random}, {kind, count, random}};
             std::vector<float> prices(static_cast<std::size_t>(count));
-            for (std::size_t k = 0; k < prices.size(); ++k) prices[k] = 0.1f * static_cast<float>((prices.size() - k) / 100);
+            for (std::size_t k = 0; k < prices.size(); ++k)
+                prices[k] = 0.1f * static_cast<float>((prices.size() - k) / 100);
             for (int trial = 0; trial < 6; ++trial) {
                 float v[2][16];
                 for (int c = 0; c < 2; ++c) {
