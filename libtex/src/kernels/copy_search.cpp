@@ -175,10 +175,12 @@ WordMask exceeds(WordVector value, std::int16_t limit) { return hn::Gt(value, hn
 struct SizeGap {
     WordVector mean, length;
 };
+// 32767 at the most, which the absolute value of -32768 would not be.
+WordVector gap_of(WordVector a, WordVector b) { return hn::Max(hn::SaturatedSub(a, b), hn::SaturatedSub(b, a)); }
 SizeGap size_gap(const CopyTable& table, int i, CopySize size) {
     const Words d;
-    return {hn::Abs(hn::SaturatedSub(hn::LoadU(d, table.means + i), hn::Set(d, size.mean))),
-            hn::Abs(hn::SaturatedSub(hn::LoadU(d, table.lengths + i), hn::Set(d, size.length)))};
+    return {gap_of(hn::LoadU(d, table.means + i), hn::Set(d, size.mean)),
+            gap_of(hn::LoadU(d, table.lengths + i), hn::Set(d, size.length))};
 }
 
 // Their square, as in a limit; what is far beyond its size becomes twice the size.
