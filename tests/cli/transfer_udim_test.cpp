@@ -113,7 +113,7 @@ TEST_F(TransferUdim, LimitsMissedTexelsTileByTile) {
 
 TEST_F(TransferUdim, MistakesAreExplained) {
     refuses({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.png"}, 2,
-            "--height-out: h.png: needs <UDIM>, as the output has it: each tile has a file of its own");
+            "--height-out: h.png: needs <UDIM>, as the output has it: each tile has its own file");
     refuses({"low.obj", "high.obj", "-o", "n.png", "--id-out", "i.<UDIM>.png"}, 2,
             "--id-out: i.<UDIM>.png: <UDIM> needs it in the name of the output, too");
     refuses({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "n.<UDIM>.png"}, 2, "n.1001.png");

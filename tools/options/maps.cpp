@@ -53,7 +53,7 @@ Container MapOutput::container_of_path(const std::string& path) const {
 void MapOutput::amend(Task& task) const {
     if (!is_given()) return;
     if (task.is_tile_of_mesh() && !has_tile(pattern_))
-        throw UsageError(name_, fmt::format("{}: needs <UDIM>, as the output has it: each tile has a file of its own",
+        throw UsageError(name_, fmt::format("{}: needs <UDIM>, as the output has it: each tile has its own file",
                                             printable(pattern_)));
     if (task.tile == 0 && has_tile(pattern_) && !has_tile(task.output))
         throw UsageError(name_, fmt::format("{}: <UDIM> needs it in the name of the output, too", printable(pattern_)));

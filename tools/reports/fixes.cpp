@@ -192,8 +192,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (report.more_data) {
         return {
             "The fix would drop what the other channels hold. unpack-normals --alpha-out or --blue-out writes that to "
-            "a "
-            "file of its own; pack-normals --format rgba8 keeps alpha."};
+            "a separate file; pack-normals --format rgba8 keeps alpha."};
     }
     if (!is_clear(id, report, require)) {
         return {

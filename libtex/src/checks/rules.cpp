@@ -152,7 +152,7 @@ constexpr Rule kRules[] = {
      "LabPBR. It falls below 0, or with a rebuilt z the slopes have less curl. Readers that do not rebuild z get bent "
      "normals. Floats are not judged.",
      "Read the map with --swizzle rg, which rebuilds z; unpack-normals --swizzle rg --blue-out writes the data to a "
-     "file of its own.",
+     "separate file.",
      "N201 N202 N205 N213 N214 N305 N308 N309 N310 N402 N403 N404"},
 
     // -- damage -----------------------------------------------------------------------------------------------
