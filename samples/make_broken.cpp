@@ -476,7 +476,7 @@ int main(int argc, char** argv) {
     }
     Maker maker{argv[2], {}};
     const auto image = read_image(argv[1]);
-    auto field = image ? height_field(*image, {}) : Result<HeightField>(image.error());
+    auto field = image ? height_field(*image, {}) : Result<PictureHeights>(image.error());
     if (!field) {
         maker.fail(field.error());
         return 3;

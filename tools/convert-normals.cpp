@@ -163,10 +163,10 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     others.apply(mip);
     const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();
-    std::optional<RdoReport> rdo;
-    if (pack_with.rdo.mean > 0.0f) rdo.emplace();
-    auto texture = pack(*chain, pack_with, job.until(0.95), rdo ? &*rdo : nullptr);
+    auto texture = pack(*chain, pack_with, job.until(0.95));
     if (!texture) return texture.error();
+    std::optional<RdoReport> rdo;
+    if (pack_with.rdo.mean > 0.0f) rdo = texture->rdo;
     const Extent extent = texture->extent();
     const auto written = cli::write_levels(job, std::move(*texture), output.of(job.task.engine).write_options(job));
     if (!written) return written.error();

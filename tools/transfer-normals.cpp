@@ -188,10 +188,10 @@ Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, Transfe
     constexpr bool kKnown = true;
     const PackOptions with =
         own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
-    std::optional<RdoReport> rdo;
-    if (with.rdo.mean > 0.0f) rdo.emplace();
-    auto texture = pack(*chain, with, job.until(0.95), rdo ? &*rdo : nullptr);
+    auto texture = pack(*chain, with, job.until(0.95));
     if (!texture) return texture.error();
+    std::optional<RdoReport> rdo;
+    if (with.rdo.mean > 0.0f) rdo = texture->rdo;
     if (report_.is_given()) {
         const std::string arguments = low_.low_arguments(meshes.low);
         const cli::TransferReport::Entry entry{meshes.low, arguments, *meshes.high, maps, *texture};

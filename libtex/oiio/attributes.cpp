@@ -5,7 +5,6 @@
 #include <OpenImageIO/strutil.h>
 
 #include <tex/format.h>
-#include <tex/swizzle.h>
 
 namespace tex::oiio {
 namespace {

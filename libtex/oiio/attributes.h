@@ -12,11 +12,10 @@
 #include <optional>
 #include <string>
 
-#include <tex/container.h>
-#include <tex/pack_options.h>
-#include <tex/result.h>
-#include <tex/texture.h>
-#include <tex/unpack_options.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
 namespace tex::oiio {
 

@@ -9,10 +9,9 @@
 #include <fstream>
 #include <string_view>
 
-#include <tex/container.h>
+#include <tex/file.h>
+#include <tex/format.h>
 #include <tex/pack.h>
-#include <tex/swizzle.h>
-#include <tex/unpack.h>
 
 #include "attributes.h"
 
@@ -236,7 +235,7 @@ Result<void> Input::make_normals() {
     PackOptions options;
     options.encoding = what_ == Pixels::floats ? Encoding::float_ : Encoding::rgb16;
     options.y_axis = texture_.y_axis;
-    Result<Texture> colours = pack(*chain, options, execution);
+    Result<PackedTexture> colours = pack(*chain, options, execution);
     if (!colours) return colours.error();
     pixels_ = std::move(colours->levels.front().bytes);
     if (what_ == Pixels::floats) to_colours(pixels_);

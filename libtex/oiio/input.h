@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
-#include <tex/texture.h>
-#include <tex/unpack_options.h>
+#include <tex/format.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
 namespace tex::oiio {
 

@@ -8,10 +8,9 @@
 #include <cstring>
 #include <utility>
 
+#include <tex/format.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
-#include <tex/swizzle.h>
-#include <tex/unpack.h>
 
 namespace tex::oiio {
 namespace {
@@ -261,7 +260,7 @@ Result<void> Output::finish() {
     pack_options.y_axis = wanted_.y.value_or(wanted_.pixels.y_axis.value_or(YAxis::up));
     pack_options.y_known = wanted_.y || wanted_.pixels.y_axis;
     const Execution execution{threads(), {}};
-    Result<Texture> texture = pack(*chain, pack_options, execution);
+    Result<PackedTexture> texture = pack(*chain, pack_options, execution);
     if (!texture) return Error{texture.error().code, name_, texture.error().reason};
     return write_texture(name_, *texture, wanted_.write, execution);
 }

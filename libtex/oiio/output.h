@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <string>
 
-#include <tex/mip_chain.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "attributes.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <pybind11/pybind11.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::python {
 

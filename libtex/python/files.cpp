@@ -24,14 +24,14 @@ void add_reading(Module& module) {
                                  const std::string path = path_from(call["path"], "path");
                                  return object_of(value_of(without_gil([&] { return read_texture(path, options); })));
                              });
-    module.verb<ReadOptions>("decode_file", {{"data", "Buffer"}, {"name", "str", "'memory'"}}, "Texture",
-                             "A DDS or KTX2 file in memory: bytes, or another buffer. Errors call it `name`.",
-                             [](Call& call, ReadOptions& options) -> py::object {
-                                 const std::vector<std::byte> bytes = bytes_from(call["data"], "data");
-                                 const std::string name = call.has("name") ? text_from(call["name"], "name") : "memory";
-                                 return object_of(value_of(without_gil(
-                                     [&] { return decode_file(bytes.data(), bytes.size(), name, options); })));
-                             });
+    module.verb<ReadOptions>(
+        "decode_file", {{"data", "Buffer"}, {"name", "str", "'memory'"}}, "Texture",
+        "The same for a file in memory: bytes, or another buffer. Errors call it `name`.",
+        [](Call& call, ReadOptions& options) -> py::object {
+            const std::vector<std::byte> bytes = bytes_from(call["data"], "data");
+            const std::string name = call.has("name") ? text_from(call["name"], "name") : "memory";
+            return object_of(value_of(without_gil([&] { return read_texture(bytes, name, options); })));
+        });
     module.verb<ReadOptions>("probe", {{"path", kPath}}, "tuple[int, int]", "(width, height) in texels.",
                              [](Call& call, ReadOptions& options) -> py::object {
                                  const std::string path = path_from(call["path"], "path");

@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include <tex/image.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex::python {
 

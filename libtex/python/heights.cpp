@@ -31,14 +31,15 @@ void add_strengths(Module& module) {
                     const double width = number("width"), height = number("height");
                     need(width > 0.0, "width", "must be above 0");
                     need(height >= 0.0, "height", "must be 0 or more");
-                    const Strength strength = strength_from_world(extent, number("range"), width, height);
+                    const Strength strength = value_of(strength_from_world(extent, number("range"), width, height));
                     return py::make_tuple(strength.x, strength.y);
                 });
     module.verb("strength_from_uv", {{"extent", "tuple[int, int]"}, {"r", "float"}}, "tuple[float, float]",
                 "The bumpiness (x, y) for bake(), from texture widths.", [](Call& call) -> py::object {
                     const double r = number_from(call["r"], "r");
                     need(std::isfinite(r), "r", "must be finite");
-                    const Strength strength = strength_from_uv(Convert<Extent>::from(call["extent"], "extent"), r);
+                    const Strength strength =
+                        value_of(strength_from_uv(Convert<Extent>::from(call["extent"], "extent"), r));
                     return py::make_tuple(strength.x, strength.y);
                 });
 }
@@ -66,9 +67,9 @@ py::object debanded(Call& call, Relief& relief, Running& running) {
     const Deband when = call.has("when") ? Convert<Deband>::from(call["when"], "when") : Deband::on;
     HeightField given = field_from(call["height"], "height", relief);
     HeightField field{given.height.clone(), given.bumpiness_x, given.bumpiness_y, given.wrap_x, given.wrap_y};
-    const DebandReport report = running.run([&](const Execution& e) { return deband(field, when, e); });
-    py::dict result = dict_of_deband(report);
-    result["field"] = object_of(std::move(field));
+    DebandedField found = running.run([&](const Execution& e) { return deband(std::move(field), when, e); });
+    py::dict result = dict_of_deband(found.report);
+    result["field"] = object_of(static_cast<HeightField&&>(found));
     return result;
 }
 
@@ -84,12 +85,10 @@ void add_heights(Module& module) {
             const Picture image(call["image"], "image");
             if (call.has("report") && !py::isinstance<py::dict>(call["report"]))
                 raise_type("report", "a dict", call["report"]);
-            HeightReport found;
-            HeightField field =
-                running.run([&](const Execution& e) { return height_field(*image, options, e, &found); });
+            PictureHeights field = running.run([&](const Execution& e) { return height_field(*image, options, e); });
             field.wrap_x = options.wrap_x;
             field.wrap_y = options.wrap_y;
-            if (call.has("report")) tell(call["report"], found);
+            if (call.has("report")) tell(call["report"], field.report);
             return object_of(std::move(field));
         });
     module.verb<Relief, Running>("deband", {{"height", kHeights}, {"when", "str", "'on'"}}, "dict[str, Any]",
@@ -121,21 +120,21 @@ void add_heights(Module& module) {
                              slopes["y"] = py::make_tuple(range.min_y, range.max_y);
                              return slopes;
                          });
-    module.verb<FromColor>("to_linear", {{"image", kPicture}}, "Image",
-                           "A new picture with linear values. Without `config`, `space` is 'sRGB' or 'linear'.",
-                           [](Call& call, FromColor& options) -> py::object {
-                               const Picture given(call["image"], "image");
-                               Image image;
-                               image.names = (*given).names;
-                               image.sample = (*given).sample;
-                               image.bits = (*given).bits;
-                               image.normal_encoding = (*given).normal_encoding;
-                               image.normal_mark = (*given).normal_mark;
-                               image.no_data = (*given).no_data;
-                               for (const Plane<float>& plane : (*given).planes) image.planes.push_back(plane.clone());
-                               value_of(without_gil([&] { return to_linear(image, options); }));
-                               return object_of(std::move(image));
-                           });
+    module.verb<FromColor>(
+        "to_linear", {{"image", kPicture}}, "Image",
+        "A new picture with linear values. Without `config`, `space` is 'sRGB' or 'linear'.",
+        [](Call& call, FromColor& options) -> py::object {
+            const Picture given(call["image"], "image");
+            Image image;
+            image.names = (*given).names;
+            image.sample = (*given).sample;
+            image.bits = (*given).bits;
+            image.normal_encoding = (*given).normal_encoding;
+            image.normal_mark = (*given).normal_mark;
+            image.no_data = (*given).no_data;
+            for (const Plane<float>& plane : (*given).planes) image.planes.push_back(plane.clone());
+            return object_of(value_of(without_gil([&] { return to_linear(std::move(image), options); })));
+        });
     module.verb<ColorOptions>("color_files", {}, "list[str]", "The files on which to_linear() depends.",
                               [](Call&, ColorOptions& options) -> py::object {
                                   return strs_of(value_of(without_gil([&] { return color_files(options); })));

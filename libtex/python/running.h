@@ -11,7 +11,7 @@
 #include <utility>
 
 #include <pybind11/pybind11.h>
-#include <tex/execution.h>
+#include <tex/types.h>
 
 #include "errors.h"
 #include "gil.h"

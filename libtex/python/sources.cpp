@@ -89,9 +89,9 @@ std::optional<HeightField> field_of_source(py::handle from) {
     return run([&](const Execution& e) -> Result<HeightField> {
         Result<Image> image = read_image(path);
         if (!image) return image.error();
-        Result<HeightField> field = height_field(*image, {}, e);
+        Result<PictureHeights> field = height_field(*image, {}, e);
         if (!field) return field.error().of(path);
-        return field;
+        return HeightField(std::move(*field));
     });
 }
 

@@ -123,7 +123,7 @@ py::object shown_texture(const Texture& texture) {
             if (const Result<MipChain> normals = unpack(shown)) {
                 PackOptions options;
                 options.encoding = Encoding::rgb8;
-                const Result<Texture> colours = pack(*normals, options);
+                const Result<PackedTexture> colours = pack(*normals, options);
                 if (colours) return encode_picture(*colours);
             }
         }

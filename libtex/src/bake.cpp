@@ -15,7 +15,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<void> validate(const BakeOptions& options) {
     const bool in_range = options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma;
@@ -25,7 +25,7 @@ Result<void> validate(const BakeOptions& options) {
 
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {
     const Extent extent = field.height.extent();
-    return guarded([&]() -> Result<NormalMap> {
+    return guarded(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(extent, "the height field"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (!std::isfinite(field.bumpiness_x) || !std::isfinite(field.bumpiness_y))
@@ -57,10 +57,10 @@ SlopeRange slope_range(const NormalMap& map, const Execution& execution) {
     const Extent extent = map.extent();
     SlopeCollector slopes(std::numeric_limits<float>::infinity(), true);
     const auto body = [&](int begin, int end) { slopes.add(map, begin, end); };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 1), body);
     if (!done) body(0, extent.height);
     return slopes.range();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const BlendOptions& options,
@@ -72,7 +72,7 @@ Result<void> validate(const Layer& layer) {
 
 Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,
                         const Execution& execution) {
-    return guarded([&]() -> Result<NormalMap> {
+    return guarded(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         for (const Layer& layer : layers) {
@@ -83,4 +83,4 @@ Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOpt
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include <tex/model.h>
-#include <tex/swizzle.h>
-#include <tex/unpack.h>
+#include <tex/format.h>
+#include <tex/mesh.h>
+#include <tex/pack.h>
 
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
@@ -31,7 +31,7 @@
 #include "rows/usable.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kLeastSide = 32;  // in texels; smaller maps get no statistics
@@ -358,4 +358,4 @@ Result<CheckReport> check_file(const std::string& path, const CheckOptions& opti
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works row by row; rows/color.cpp converts.
+// Works row by row; rows/linear_rows.h converts.
 
-#include <tex/color.h>
+#include <tex/height.h>
+
+#include <utility>
 
 #include <OpenColorIO/OpenColorIO.h>
 
-#include "rows/color.h"
+#include "color/color.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 const char* opencolorio_version() { return OCIO_NAMESPACE::GetVersion(); }
 
-Result<void> to_linear(Image& image, const ColorOptions& options) {
-    return guarded([&]() -> Result<void> {
+Result<Image> to_linear(Image image, const ColorOptions& options) {
+    return guarded([&]() -> Result<Image> {
         const Result<LinearRows> rows =
-            LinearRows::make(image.names, image.sample, image.bits, options.config, options.space);
+            linear_rows(image.names, image.sample, image.bits, options.config, options.space);
         if (!rows) return rows.error();
         if (image.no_data) {
             Image texel;
             texel.names = image.names;
             for (std::size_t k = 0; k < image.names.size(); ++k)
                 texel.planes.emplace_back(Extent{1, 1}, *image.no_data);
-            if (Result<void> converted = rows->convert(texel, 1); !converted) return converted;
+            if (Result<void> converted = rows->convert(texel, 1); !converted) return converted.error();
             image.no_data = texel.planes.front().at(0, 0);
         }
-        return rows->convert(image, image.extent().height);
+        if (Result<void> converted = rows->convert(image, image.extent().height); !converted) return converted.error();
+        return std::move(image);
     });
 }
 
@@ -33,4 +36,4 @@ Result<std::vector<std::string>> color_files(const ColorOptions& options) {
     return guarded([&] { return files_of_conversion(options.config, options.space); });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

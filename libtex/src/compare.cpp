@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/compare.h>
+#include <tex/check.h>
 
 #include <algorithm>
 #include <atomic>
@@ -18,7 +18,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<void> check_pair(const NormalMap& a, const NormalMap& b) {
@@ -78,7 +78,7 @@ std::int64_t measure_strip(Angles& angles, Extent extent, int first, const std::
 }  // namespace
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution) {
-    return guarded([&]() -> Result<Comparison> {
+    return guarded(execution, [&]() -> Result<Comparison> {
         if (auto usable = check_pair(a, b); !usable) return usable.error();
         Angles angles(a, b);
         const auto body = [&](int begin, int end) {
@@ -94,7 +94,7 @@ Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Executi
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const MeshPart& part, int uv_set,
                            const Execution& execution) {
-    return guarded([&]() -> Result<Comparison> {
+    return guarded(execution, [&]() -> Result<Comparison> {
         if (auto usable = check_pair(a, b); !usable) return usable.error();
         if (auto usable = check_part(part); !usable) return usable.error();
         if (uv_set < 0 || static_cast<std::size_t>(uv_set) >= part.uvs.size())
@@ -117,4 +117,4 @@ Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const MeshPar
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

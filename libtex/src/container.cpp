@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +16,7 @@
 #include "formats/texture_rows.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The letters after the last dot of the last part of the path, in lower case; empty if there is no dot.
@@ -123,15 +123,14 @@ Result<Texture> read_texture(const std::string& path, const ReadOptions& options
     });
 }
 
-Result<Texture> decode_file(const std::byte* data, std::size_t size, const std::string& name,
-                            const ReadOptions& options) {
+Result<Texture> read_texture(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
-        const Codec& codec = codec_for({data, size});
-        if (codec.parse == nullptr) {
-            return Error{ErrorCode::bad_data, name, size == 0 ? "the file is empty" : "neither a DDS nor a KTX2 file"};
-        }
-        return load_texture(codec.parse, data, size, name, options);
+        if (const Codec& codec = codec_for(bytes); codec.parse != nullptr)
+            return load_texture(codec.parse, bytes.data(), bytes.size(), name, options);
+        Result<InputFile> file = InputFile::from_memory(name, {bytes.begin(), bytes.end()});
+        if (!file) return file.error();
+        return read_texture(*file, options);
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

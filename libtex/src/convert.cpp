@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/convert.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <atomic>
@@ -17,7 +17,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The width in texels of the border that continues triangles in object space.
@@ -161,7 +161,7 @@ Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& exec
 Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction,
                              const ConvertOptions& options, const Execution& execution) {
     const int padding = options.padding, subsamples = options.subsamples;
-    return guarded([&]() -> Result<ConvertedMap> {
+    return guarded(execution, [&]() -> Result<ConvertedMap> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (auto sound = check_part(space.part); !sound) return sound.error().of(space.file);
@@ -225,4 +225,4 @@ Result<ConvertedMap> refit(const NormalMap& map, const TangentSpace& from, const
     return result;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

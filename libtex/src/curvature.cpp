@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Handles memory and threads; rows/curvature_rows.cpp computes.
 
-#include <tex/curvature.h>
+#include <tex/surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct RowRange {
@@ -55,10 +55,10 @@ Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options
 }  // namespace
 
 Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<Curvature> {
+    return guarded(execution, [&]() -> Result<Curvature> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         return measured(map, options, execution);
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

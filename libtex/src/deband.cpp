@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // surface/debander.cpp finds the steps and the heights.
 
-#include <tex/deband.h>
+#include <tex/height.h>
+
+#include <utility>
 
 #include "rows/usable.h"
 #include "surface/debander.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
-Result<DebandReport> deband(HeightField& field, Deband when, const Execution& execution) {
-    return guarded([&]() -> Result<DebandReport> {
+Result<DebandedField> deband(HeightField field, Deband when, const Execution& execution) {
+    return guarded(execution, [&]() -> Result<DebandedField> {
         if (auto usable = check_usable(field.height.extent(), "the height field"); !usable) return usable.error();
-        return deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {});
+        auto report = deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {});
+        if (!report) return report.error();
+        return DebandedField{std::move(field), *report};
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "blocks/extent.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr SampleKind kUnorm = SampleKind::unorm;
@@ -181,4 +181,4 @@ std::string to_string(const Swizzle& swizzle) {
 
 EncodingInfo encoding_info(Encoding encoding) { return kEncodings[static_cast<std::size_t>(encoding)].info; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/heat_map.h>
+#include <tex/check.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 static_assert(kHeatMapLegendRows == render::kLegendRows);
@@ -30,7 +30,7 @@ void copy(const Level& picture, Image& image, int top) {
 }  // namespace
 
 Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution) {
-    return guarded([&]() -> Result<Image> {
+    return guarded(execution, [&]() -> Result<Image> {
         if (auto usable = check_usable(degrees.extent(), "the map"); !usable) return usable.error();
         if (!(full_scale > 0.0 && full_scale <= 180.0))
             return bad_option("full_scale: must be above 0 and at most 180");
@@ -74,4 +74,4 @@ Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -2,7 +2,7 @@
 // Puts the steps in order; rows/height_source.cpp chooses the plane with the heights, kernels/height_field.cpp
 // computes.
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include <algorithm>
 #include <atomic>
@@ -20,7 +20,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The number of rows of an extent that are worth a thread.
@@ -62,21 +62,23 @@ Result<void> blur(HeightField& field, double sigma, const Execution& execution, 
 
 }  // namespace
 
-Strength strength_from_world(Extent extent, double range, double width, double height) {
-    assert(width > 0.0 && height >= 0.0 && std::isfinite(range) && std::isfinite(width) && std::isfinite(height));
+Result<Strength> strength_from_world(Extent extent, double range, double width, double height) {
+    if (!std::isfinite(range)) return bad_option("range: must be finite");
+    if (!(width > 0.0 && std::isfinite(width))) return bad_option("width: must be above 0");
+    if (!(height >= 0.0 && std::isfinite(height))) return bad_option("height: must be at least 0");
     const double x = range * extent.width / width;
     const double y = height > 0.0 ? range * extent.height / height : x;
-    return {finite(x), finite(y)};
+    return Strength{finite(x), finite(y)};
 }
 
-Strength strength_from_uv(Extent extent, double r) {
+Result<Strength> strength_from_uv(Extent extent, double r) {
+    if (!std::isfinite(r)) return bad_option("r: must be finite");
     const float strength = finite(r * extent.width);
-    return {strength, strength};
+    return Strength{strength, strength};
 }
 
-Result<HeightField> height_field(const Image& image, const HeightOptions& options, const Execution& execution,
-                                 HeightReport* report) {
-    return guarded([&]() -> Result<HeightField> {
+Result<PictureHeights> height_field(const Image& image, const HeightOptions& options, const Execution& execution) {
+    return guarded(execution, [&]() -> Result<PictureHeights> {
         if (auto usable = check_usable(image); !usable) return usable.error();
         if (std::optional<Error> wrong = check_blur(options)) return std::move(*wrong);
         const PictureFacts facts = facts_of(image);
@@ -119,10 +121,9 @@ Result<HeightField> height_field(const Image& image, const HeightOptions& option
             auto done = blur(field, static_cast<double>(options.blur_sigma), execution, {filled, 1.0});
             if (!done) return done.error();
         }
-        if (report != nullptr)
-            *report = {luma_texels, invalid_texels, *deband, implausible_texels, image.stored, image.remark};
-        return field;
+        return PictureHeights{std::move(field),
+                              {luma_texels, invalid_texels, *deband, implausible_texels, image.stored, image.remark}};
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

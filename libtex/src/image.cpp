@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tex/image.h>
+#include <tex/types.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -17,7 +17,7 @@
 #endif
 #endif
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 void free_rows(void* rows) noexcept {
@@ -37,6 +37,11 @@ std::shared_ptr<void> allocate_rows(std::size_t bytes) {
         if (rows == nullptr) throw std::bad_alloc();
         return {rows, [lent](void* piece) { lent->release(piece); }, WorkingAllocator<char>()};
     }
+    if (const RowAllocation::Allocate* const allocate = RowAllocation::current(); allocate != nullptr) {
+        std::shared_ptr<void> rows = (*allocate)(bytes);
+        if (rows == nullptr) throw std::bad_alloc();
+        return rows;
+    }
 #ifdef TEX_ADDRESS_SANITIZER
     void* const block = std::aligned_alloc(kRowAlignment, bytes + kRowAlignment);
 #else
@@ -50,4 +55,4 @@ std::shared_ptr<void> allocate_rows(std::size_t bytes) {
     return {static_cast<void*>(rows), free_rows};  // frees them, too, if its own memory cannot be had
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

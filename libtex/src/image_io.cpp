@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<Image> read_image(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Image> {
@@ -16,4 +16,12 @@ Result<Image> read_image(const std::string& path, const ReadOptions& options) {
     });
 }
 
-}  // namespace tex
+Result<Image> read_image(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
+    return guarded([&]() -> Result<Image> {
+        Result<InputFile> file = InputFile::from_memory(name, {bytes.begin(), bytes.end()});
+        if (!file) return std::move(file).error();
+        return read_image(*file, options);
+    });
+}
+
+}  // namespace tex::inline v1

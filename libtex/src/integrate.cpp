@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the map, measures what is left over, and sets the constant; surface/integrator.cpp finds the heights.
 
-#include <tex/integrate.h>
+#include <tex/surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<void> check(const Integrator::Count& count, Extent extent) {
@@ -82,7 +82,7 @@ Result<void> validate(const IntegrateOptions& options) {
 }
 
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<Integration> {
+    return guarded(execution, [&]() -> Result<Integration> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         Integration result;
@@ -115,8 +115,8 @@ void stretch_heights(Plane<float>& heights, float low, float high, const Executi
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) shift_and_scale(low, factor, extent.width, heights.row(j));
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (!parallel_for(silent, extent.height, strip_rows(extent.width, 0), body)) body(0, extent.height);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include "mesh/vectors.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Error bad(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
@@ -129,4 +129,4 @@ Result<MeshPart> in_scene(MeshPart part, const MeshNode& node) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

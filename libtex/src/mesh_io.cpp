@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -15,7 +15,7 @@
 #include "mesh/obj.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& bytes, const MeshReadOptions& options) {
@@ -81,4 +81,4 @@ Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshR
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh_selection.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <charconv>
@@ -10,15 +10,13 @@
 #include <set>
 #include <utility>
 
-#include <tex/tangents.h>
-
 #include "mesh/part_names.h"
 #include "mesh/uv_tiles.h"
 #include "mesh/uv_transform.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Error unfit(std::string reason, ErrorDetail detail = ErrorDetail::none) {
@@ -390,4 +388,4 @@ MatchedNames match_names(const std::vector<std::string>& low, const std::vector<
     return matched;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

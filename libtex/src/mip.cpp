@@ -20,7 +20,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 void finish_rows(NormalMap& level, const MipOptions& options, int index, int begin, int end) {
@@ -113,7 +113,7 @@ Result<void> validate(const MipOptions& options) {
 }
 
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<MipChain> {
+    return guarded(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         const Extent extent = base.extent();
@@ -144,4 +144,4 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/model.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "files/beside.h"
 #include "files/input_file.h"
@@ -19,7 +19,7 @@
 #include "mesh/gltf_materials.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 enum class Geometry { read, left_out };
@@ -156,4 +156,4 @@ Result<std::vector<ModelMap>> maps_of(const Model& model, const std::string& mat
     return maps;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The number of texels in a piece of work: enough to be worth passing to a thread, few enough to stay in its cache.
@@ -73,26 +73,30 @@ Result<void> validate(const PackOptions& options) {
     return {};
 }
 
-Result<Texture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution, RdoReport* rdo) {
-    return guarded([&]() -> Result<Texture> {
+Result<PackedTexture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
+    return guarded(execution, [&]() -> Result<PackedTexture> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (const NormalMap& base = chain.levels.front(); !base.blue.empty() && !base.length.empty())
             return bad_option("blue and length exclude each other: without z, a vector has no length");
         RdoTally tally;
         Result<Texture> texture = pack_chain(chain, options, execution, &tally);
-        if (texture && rdo != nullptr && is_optimised(options)) *rdo = report_of(tally.sum());
-        return texture;
+        if (!texture) return texture.error();
+        return PackedTexture{std::move(*texture), is_optimised(options) ? report_of(tally.sum()) : RdoReport()};
     });
 }
 
-void encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options, std::byte* blocks,
-                   std::size_t pitch) {
+Result<void> encode_blocks(PlaneView<const float> x, PlaneView<const float> y, const PackOptions& options,
+                           std::byte* blocks, std::size_t pitch) {
     const Extent extent = x.extent;
-    assert(extent == y.extent && extent.width >= 1 && extent.height >= 1);
-    assert(pitch >= level_bytes(encoding_info(options.encoding).format, {extent.width, 1}));
+    if (extent != y.extent || extent.width < 1 || extent.height < 1)
+        return bad_option("x, y: must have the same extent, at least 1x1");
+    if (!can_optimise(options.encoding)) return bad_option("encoding: must be of blocks with x and y in a half each");
+    if (pitch < level_bytes(encoding_info(options.encoding).format, {extent.width, 1}))
+        return bad_option("pitch: too small for a row of blocks");
     for (int j = 0; j < extent.height; j += kBlockEdge, blocks += pitch)
         encode_blocks(block_row(x, y, extent, j, options.y_axis == YAxis::down), options, blocks);
+    return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "stream/pack_stream.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 namespace {
 
@@ -81,4 +81,4 @@ Result<BlendFileReport> blend_file(const std::string& input, const std::string& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

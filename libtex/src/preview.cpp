@@ -8,19 +8,17 @@
 #include <utility>
 #include <vector>
 
-#include <tex/sheet.h>
-
 #include "mesh/frames.h"
 #include "preview/canvas.h"
 #include "preview/measures.h"
 #include "preview/mesh_body.h"
 #include "preview/mesh_shows.h"
-#include "preview/progress.h"
 #include "preview/surfaces.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
+#include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using namespace render;
@@ -101,10 +99,10 @@ struct Job {
 };
 
 Result<Texture> show_lit(const Job& job) {
-    const auto textures = Textures::prepare(job.scene, job.options, part(job.execution, 0.0, 0.2));
+    const auto textures = Textures::prepare(job.scene, job.options, part_of(job.execution, 0.0, 0.2));
     if (!textures) return textures.error();
     const LitSurface surface(*textures, job.scene, job.options, job.stage);
-    const Execution drawing = part(job.execution, 0.2, 1.0);
+    const Execution drawing = part_of(job.execution, 0.2, 1.0);
     if (job.options.show != Show::world_normals) {
         return render::render(
             job.stage, Space::linear,
@@ -132,7 +130,7 @@ Result<Texture> show_colors(const Job& job) {
 
 Result<Texture> show_plane(const Job& job, PlaneView<const float> values, const ColorScale& scale,
                            const Execution& execution) {
-    const auto pyramid = Pyramid::build({values}, part(execution, 0.0, 0.2));
+    const auto pyramid = Pyramid::build({values}, part_of(execution, 0.0, 0.2));
     if (!pyramid) return pyramid.error();
     const Sampler sampler = pyramid->sampler(job.options.wrap_x, job.options.wrap_y);
     auto picture = render::render(
@@ -140,15 +138,15 @@ Result<Texture> show_plane(const Job& job, PlaneView<const float> values, const 
         [&](const Hit& hit, const Footprint& footprint) {
             return scale.color(sample(sampler, hit.uv, footprint, job.options.anisotropy)[0]);
         },
-        part(execution, 0.2, 1.0));
+        part_of(execution, 0.2, 1.0));
     if (!picture) return picture.error();
     return job.finish(std::move(*picture), scale);
 }
 
 Result<Texture> show_measure(const Job& job) {
-    const auto found = measure(job.options, job.base(), part(job.execution, 0.0, 0.3));
+    const auto found = measure(job.options, job.base(), part_of(job.execution, 0.0, 0.3));
     if (!found) return found.error();
-    return show_plane(job, found->values.view(), found->scale, part(job.execution, 0.3, 1.0));
+    return show_plane(job, found->values.view(), found->scale, part_of(job.execution, 0.3, 1.0));
 }
 
 Result<Texture> show_channels(const Job& job) {
@@ -161,7 +159,7 @@ Result<Texture> show_channels(const Job& job) {
     };
     for (const auto& [plane, scale] : channels) {
         const double k = static_cast<double>(panels.size());
-        auto picture = show_plane(job, plane.view(), scale, part(job.execution, k / 3.0, (k + 1.0) / 3.0));
+        auto picture = show_plane(job, plane.view(), scale, part_of(job.execution, k / 3.0, (k + 1.0) / 3.0));
         if (!picture) return picture.error();
         panels.push_back({std::move(*picture), {}});
     }
@@ -248,7 +246,7 @@ Result<Texture> show(const Job& job) {
 }  // namespace
 
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<Texture> {
+    return guarded(execution, [&]() -> Result<Texture> {
         if (scene.map == nullptr) return bad("there is no map to show");
         if (auto usable = check_usable(*scene.map); !usable) return usable.error();
         if (const auto sound = check_light(options); !sound) return sound.error();
@@ -273,4 +271,4 @@ Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/probe.h>
+#include <tex/file.h>
 
 #include "files/input_file.h"
 #include "formats/codecs.h"
 #include "formats/row_source.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<Extent> probe(const std::string& path, const ReadOptions& options) {
     return guarded([&]() -> Result<Extent> {
@@ -21,4 +21,4 @@ Result<Extent> probe(const std::string& path, const ReadOptions& options) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

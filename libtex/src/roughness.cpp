@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Handles memory and threads; kernels/roughness.cpp computes, and the filters are those of mip.cpp.
 
-#include <tex/roughness.h>
+#include <tex/mip.h>
 
 #include <algorithm>
 #include <utility>
@@ -16,7 +16,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Computes the material's own roughness and alpha^2 at the base level.
@@ -79,7 +79,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
 
 Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                              const MipOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<RoughnessChain> {
+    return guarded(execution, [&]() -> Result<RoughnessChain> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto usable = check_usable(roughness.extent(), "the roughness map"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
@@ -90,7 +90,7 @@ Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<
 Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
     constexpr Format kFormats[] = {Format::bc4_unorm, Format::eac_r11_unorm, Format::r8_unorm,
                                    Format::r16_unorm, Format::r16_float,     Format::r32_float};
-    return guarded([&]() -> Result<Texture> {
+    return guarded(execution, [&]() -> Result<Texture> {
         if (chain.levels.empty()) return bad_option("the chain has no level");
         if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {
             return Error{
@@ -102,4 +102,4 @@ Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effor
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/scale.h>
+#include <tex/blend.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execution& execution, ProgressSpan span) {
@@ -36,7 +36,7 @@ Result<void> check_scale(float scale) {
 }  // namespace
 
 Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execution& execution) {
-    return guarded([&]() -> Result<NormalMap> {
+    return guarded(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = check_scale(scale); !valid) return valid.error();
         if (const auto scaled = scale_rows(map, scale, mode, execution, {}); !scaled) return scaled.error();
@@ -45,7 +45,7 @@ Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execut
 }
 
 Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execution& execution) {
-    return guarded([&]() -> Result<MipChain> {
+    return guarded(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = check_scale(scale); !valid) return valid.error();
         double texels = 0.0;
@@ -61,4 +61,4 @@ Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execut
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

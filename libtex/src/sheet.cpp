@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/sheet.h>
+#include <tex/preview.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include "preview/canvas.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using render::Canvas;
@@ -190,4 +190,4 @@ Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pict
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/source.h>
+#include <tex/file.h>
 
 #include "stream/normal_source.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<Source> read_normals(const std::string& path, const SourceOptions& options, bool base_only,
                             const Execution& execution) {
@@ -15,4 +15,4 @@ Result<Source> read_normals(const std::string& path, const SourceOptions& option
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Joins the steps; stream/made_map.cpp makes the rows of those before the last.
 
-#include <tex/steps.h>
+#include <tex/pipeline.h>
 
 #include "rows/usable.h"
 #include "stream/blend_stream.h"
@@ -9,7 +9,7 @@
 #include "stream/pack_stream.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct LastStep {
@@ -89,4 +89,4 @@ Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include <algorithm>
 #include <iterator>
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "rows/swizzle_evidence.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr Component kNormalComponents[] = {Component::x, Component::y, Component::z};
@@ -43,4 +43,4 @@ Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

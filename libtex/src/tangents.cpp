@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include <string>
 #include <utility>
@@ -9,7 +9,7 @@
 #include "mesh/mikktspace.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<std::vector<Float4>> tangents_of(const MeshPart& part, TangentMethod method, int uv_set,
@@ -53,4 +53,4 @@ Result<std::vector<Float4>> stored_tangents(const MeshPart& part) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include "formats/png/png_texels.h"
 #include "kernels/target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 const char* version() { return TEX_VERSION; }
 
@@ -23,4 +23,4 @@ Runtime runtime() {
              {"openexr", exr_version()}}};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <charconv>
@@ -19,7 +19,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 double diagonal_of(const MeshPart& part) {
@@ -219,7 +219,7 @@ Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const s
 Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,
                                  const TransferInputs& inputs, const TransferOptions& options,
                                  const Execution& execution) {
-    return guarded([&]() -> Result<TransferredMaps> {
+    return guarded(execution, [&]() -> Result<TransferredMaps> {
         if (auto usable = check_usable(extent, "the map"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (auto sound = check_part(low.part); !sound) return sound.error().of(low.file);
@@ -237,4 +237,4 @@ Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const s
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

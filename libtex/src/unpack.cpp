@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include <algorithm>
 #include <array>
@@ -11,12 +11,13 @@
 #include "kernels/unpack.h"
 #include "rows/channel_names.h"
 #include "rows/decode_rows.h"
+#include "rows/stored_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
@@ -238,7 +239,7 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
 }  // namespace
 
 Result<Image> decode(const Texture& texture, int level, const Execution& execution) {
-    return guarded([&]() -> Result<Image> {
+    return guarded(execution, [&]() -> Result<Image> {
         if (level < 0 || static_cast<std::size_t>(level) >= texture.levels.size())
             return bad_option("level: the texture has no level " + std::to_string(level));
         const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
@@ -249,18 +250,39 @@ Result<Image> decode(const Texture& texture, int level, const Execution& executi
     });
 }
 
+Result<void> decode_blocks(Format format, const std::byte* bytes, std::size_t pitch,
+                           const std::array<PlaneView<float>, 4>& channels) {
+    float* rows[4];
+    const PlaneView<float>* any = nullptr;
+    for (std::size_t c = 0; c < 4; ++c) {
+        rows[c] = channels[c].data;
+        if (rows[c] == nullptr) continue;
+        if (static_cast<int>(c) >= format_info(format).channels) return bad_option("channels: the format has fewer");
+        if (any != nullptr && (channels[c].extent != any->extent || channels[c].stride != any->stride))
+            return bad_option("channels: must have the same extent and stride");
+        any = &channels[c];
+    }
+    if (any == nullptr) return {};
+    const Extent extent = any->extent;
+    if (extent.width < 1 || extent.height < 1) return bad_option("channels: must have texels");
+    if (pitch < level_bytes(format, {extent.width, 1})) return bad_option("pitch: too small for a row");
+    const StoredRows from{bytes, pitch, format, format_info(format), extent.width, extent.height};
+    for (int j = 0; j < extent.height; j += from.info.block.height) from.decode_exactly(j, rows, any->stride);
+    return {};
+}
+
 Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<MipChain> {
+    return guarded(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(texture); !usable) return usable.error();
         return unpack_levels(texture, options, execution);
     });
 }
 
 Result<NormalMap> unpack(const Image& image, const UnpackOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<NormalMap> {
+    return guarded(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(image); !usable) return usable.error();
         return unpack_image(image, options, execution);
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

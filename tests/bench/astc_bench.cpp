@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/compare.h>
+#include <tex/check.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "bench/encode_maps.h"
 

@@ -3,7 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <tex/compare.h>
+#include <tex/check.h>
 
 #include "bench/verb_bench.h"
 #include "kernels/angle.h"

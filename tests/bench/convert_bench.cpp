@@ -11,8 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include <tex/convert.h>
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "unit/meshes.h"
 

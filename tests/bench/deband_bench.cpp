@@ -15,9 +15,9 @@
 #include <vector>
 
 #include <tex/bake.h>
-#include <tex/compare.h>
-#include <tex/deband.h>
-#include <tex/image_io.h>
+#include <tex/check.h>
+#include <tex/file.h>
+#include <tex/height.h>
 
 #include "unit/fields.h"
 
@@ -38,7 +38,7 @@ void print_times() {
                     return std::round(255.0 * (hills + rough * fields::noise(i, j))) / 255.0;
                 });
                 const auto begin = std::chrono::steady_clock::now();
-                if (!deband(field, Deband::on, {2, {}})) return;
+                if (!deband(std::move(field), Deband::on, {2, {}})) return;
                 best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
             }
             rusage usage{};
@@ -109,13 +109,12 @@ void print_map(const std::string& name, Plane<float> heights, Wrap wrap) {
     const NormalMap truth = bake(with(heights.clone(), wrap)).value();
     const double without = angle(truth, with(codes.clone(), wrap));
     const Blur blur = best_blur(truth, codes, wrap);
-    HeightField field = with(codes.clone(), wrap);
-    const auto report = deband(field);
+    const DebandedField field = deband(with(codes.clone(), wrap)).value();
     const double debanded = angle(truth, field);
     const Extent extent = heights.extent();
     std::printf("| %s | %.0f | %.3f | %.3f | %.2g | %.3f | %.2f | %.4f | %s |\n", name.c_str(),
-                100.0 * static_cast<double>(report->terrace_texels) / static_cast<double>(extent.texels()), without,
-                blur.angle, static_cast<double>(blur.sigma), debanded, without / debanded,
+                100.0 * static_cast<double>(field.report.terrace_texels) / static_cast<double>(extent.texels()),
+                without, blur.angle, static_cast<double>(blur.sigma), debanded, without / debanded,
                 angle(truth, with(deep.clone(), wrap)), rounds_to(codes, field.height) ? "yes" : "NO");
 }
 

@@ -75,7 +75,7 @@ inline void add_map(const std::filesystem::path& path, std::vector<Map>& maps) {
 // Adds the normals of a height map, rounded to 8 bits as in the other maps.
 inline void add_heights(const std::string& path, std::vector<Map>& maps) {
     const tex::Result<tex::Image> image = tex::read_image(path);
-    auto field = image ? tex::height_field(*image, {}) : tex::Result<tex::HeightField>(image.error());
+    auto field = image ? tex::height_field(*image, {}) : tex::Result<tex::PictureHeights>(image.error());
     if (!field) {
         std::fprintf(stderr, "%s\n", field.error().message().c_str());
         return;

@@ -14,9 +14,8 @@
 #include <vector>
 
 #include <tex/bake.h>
-#include <tex/image_io.h>
-#include <tex/integrate.h>
-#include <tex/source.h>
+#include <tex/file.h>
+#include <tex/surface.h>
 
 #include "unit/fields.h"
 

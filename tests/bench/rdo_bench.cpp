@@ -85,7 +85,7 @@ Point pack_map(const Map& map, tex::PackOptions options, double mean) {
     tex::MipChain chain;
     chain.levels.push_back(std::move(whole));
     const double start = processor_seconds();
-    const tex::Result<tex::Texture> texture = tex::pack(chain, options, {1, {}});
+    const tex::Result<tex::PackedTexture> texture = tex::pack(chain, options, {1, {}});
     const double seconds = processor_seconds() - start;
     if (!texture) std::abort();
     Point point = measure(chain.levels[0], *texture);

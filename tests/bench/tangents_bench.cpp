@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "unit/meshes.h"
 

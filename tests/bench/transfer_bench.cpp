@@ -14,8 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/tangents.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "bench/wavy_sphere.h"
 #include "rays/box_tree.h"

@@ -8,7 +8,6 @@
 #include <benchmark/benchmark.h>
 
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "bench/verb_bench.h"
 #include "unit/fields.h"

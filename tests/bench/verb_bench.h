@@ -12,8 +12,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include <tex/image.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "unit/fields.h"
 

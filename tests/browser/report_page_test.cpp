@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include <gtest/gtest.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "browser/page.h"
 

@@ -191,15 +191,15 @@ exports)
         library=$scratch/libtex.so
         "$cxx" -shared -o "$library" -Wl,--whole-archive "$build/libtex.a" -Wl,--no-whole-archive
     fi
-    # Functions of the namespace tex itself: "tex::bake(". What the headers define inline may be there or not.
+    # Functions of the namespace itself: "tex::v1::bake(". What the headers define inline may be there or not.
     nm -DC --defined-only "$library" |
-        sed -n 's/^[0-9a-f]* [TW] tex::\([a-z][a-z0-9_]*\)\((\|\[abi\).*/\1/p' | sort -u >"$scratch/exported.txt"
+        sed -n 's/^[0-9a-f]* [TW] tex::v1::\([a-z][a-z0-9_]*\)\((\|\[abi\).*/\1/p' | sort -u >"$scratch/exported.txt"
     while read -r name; do
         grep -rqw -- "$name" "$source/libtex/include/tex" || fail "the library exports $name, which no header declares"
     done <"$scratch/exported.txt"
-    # The functions that sources define: they begin a line, after [[nodiscard]].
-    grep -h '^\[\[nodiscard\]\]' "$source"/libtex/include/tex/*.h | grep -v 'constexpr\|inline' |
-        sed -n 's/^\[\[nodiscard\]\] [^(]*[ *]\([a-z][a-z0-9_]*\)(.*/\1/p' | sort -u >"$scratch/declared.txt"
+    # The functions that sources define: TEX_API stands before their types.
+    sed -n 's/^\(\[\[nodiscard\]\] \|\)TEX_API [^(]*[ *]\([a-z][a-z0-9_]*\)(.*/\2/p' "$source"/libtex/include/tex/*.h |
+        sort -u >"$scratch/declared.txt"
     count=$(wc -l <"$scratch/declared.txt")
     [ "$count" -ge 30 ] || fail "only $count functions were found in the headers"
     missing=$(comm -23 "$scratch/declared.txt" "$scratch/exported.txt")

@@ -10,7 +10,6 @@
 #include <iterator>
 
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "blocks/astc_decode.h"
 #include "blocks/bc1.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/mesh_selection.h>
+#include <tex/mesh.h>
 
 #include "fuzz/whole_mesh.h"
 #include "mesh/gltf.h"

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 inline void expect(bool holds) {
     if (!holds) std::abort();

@@ -5,8 +5,8 @@
 
 #include <cstdlib>
 
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 // Small enough for a fuzzer's memory and time.
 inline tex::ReadOptions fuzz_options() {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 namespace peers {
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
 namespace peers {
 

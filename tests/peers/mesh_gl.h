@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include <tex/convert_options.h>
-#include <tex/mip_chain.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 #include "wikibook_gl.h"
 

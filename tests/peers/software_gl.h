@@ -14,7 +14,7 @@
 #include <GL/glext.h>
 
 #include <tex/format.h>
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 namespace peers {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 namespace peers {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// blur.h: the Gaussian blur of heights, see HeightOptions::blur_sigma in tex/height_field.h.
+// blur.h: the Gaussian blur of heights, see HeightOptions::blur_sigma in tex/height.h.
 
 #pragma once
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include "reference/grid.h"
 

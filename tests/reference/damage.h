@@ -5,9 +5,8 @@
 
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/mip_chain.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 namespace tex::reference {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <tex/check.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 #include "reference/planting.h"
 #include "reference/real_maps.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::reference {
 

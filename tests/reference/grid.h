@@ -8,8 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex::reference {
 

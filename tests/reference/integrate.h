@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// integrate.h: heights from normals, see tex/integrate.h: the same sum of squares, as a matrix.
+// integrate.h: heights from normals, see tex/surface.h: the same sum of squares, as a matrix.
 
 #pragma once
 
-#include <tex/integrate.h>
+#include <tex/surface.h>
 
 #include "reference/grid.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/normal_map.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 namespace tex::reference {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex::reference {
 

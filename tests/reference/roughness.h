@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughness.h: roughness maps of mip chains, see tex/roughness.h.
+// roughness.h: roughness maps of mip chains, see tex/mip.h.
 
 #pragma once
 
 #include <vector>
 
-#include <tex/roughness.h>
+#include <tex/mip.h>
 
 #include "reference/grid.h"
 

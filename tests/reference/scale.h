@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// scale.h: makes normals steeper or flatter, see tex/scale.h.
+// scale.h: makes normals steeper or flatter, see tex/blend.h.
 
 #pragma once
 
-#include <tex/scale.h>
+#include <tex/blend.h>
 
 #include "reference/grid.h"
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-#include <tex/image.h>
+#include <tex/types.h>
 
 namespace tex {
 namespace {

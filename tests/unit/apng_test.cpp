@@ -10,8 +10,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <tex/image_io.h>
-#include <tex/sheet.h>
+#include <tex/file.h>
+#include <tex/preview.h>
 
 #include "preview/canvas.h"
 

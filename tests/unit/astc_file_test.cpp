@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 namespace tex {
 namespace {

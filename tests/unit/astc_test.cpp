@@ -10,9 +10,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/compare.h>
+#include <tex/check.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "reference/astc_block.h"
 

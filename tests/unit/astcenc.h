@@ -10,7 +10,7 @@
 
 #include <astcenc.h>
 #include <gtest/gtest.h>
-#include <tex/image.h>
+#include <tex/types.h>
 
 namespace tex {
 

@@ -17,7 +17,7 @@
 #include <fstream>
 #include <string>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "unit/file_text.h"
 

@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "unit/file_text.h"
 

@@ -15,7 +15,6 @@
 #include <tex/check.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "reference/damage.h"
 

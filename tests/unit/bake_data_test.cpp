@@ -2,7 +2,7 @@
 // bake() against the double-precision reference on real height maps: DEMs in metres, 8-bit terraces, sensor noise.
 
 #include <tex/bake.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include <algorithm>
 #include <cstdio>

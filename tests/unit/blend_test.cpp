@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
-#include <tex/compare.h>
+#include <tex/check.h>
 #include <tex/mip.h>
 
 #include "reference/blend.h"

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "formats/codecs.h"
 #include "reference/bmp_file.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 #include "blocks/bc6h.h"
 #include "blocks/bc7.h"
@@ -82,7 +82,7 @@ TEST(Bptc, EveryNumberInDdsIsKnown) {
     };
     for (const auto& [dxgi, format] : numbers) {
         const std::vector<std::byte> file = dds_of(dxgi);
-        const auto texture = decode_file(file.data(), file.size(), "x.dds");
+        const auto texture = read_texture(file, "x.dds");
         ASSERT_TRUE(texture) << texture.error().message();
         EXPECT_EQ(texture->format, format) << dxgi;
         EXPECT_EQ(texture->srgb, dxgi == 99);

@@ -14,7 +14,7 @@
 #include <cstdlib>
 
 #include <gtest/gtest.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex::c_maps {
 

@@ -6,9 +6,9 @@
 
 #include <filesystem>
 
-#include <tex/container.h>
-#include <tex/height_field.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/height.h>
+#include <tex/pack.h>
 
 #include "formats/exr/exr_rows.h"
 #include "unit/exr_files.h"
@@ -104,7 +104,7 @@ TEST(ChannelNames, HeightsAreTakenByWholeNamesAndFromLayers) {
         image.names = names;
         for (std::size_t k = 0; k < names.size(); ++k)
             image.planes.emplace_back(Extent{1, 1}, static_cast<float>(k + 1) / 8.0f);
-        const Result<HeightField> field = height_field(image, options);
+        const Result<PictureHeights> field = height_field(image, options);
         return field ? field->height.at(0, 0) : -1.0f;
     };
     HeightOptions options;

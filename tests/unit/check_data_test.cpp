@@ -16,9 +16,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tex/blend.h>
 #include <tex/pack.h>
-#include <tex/scale.h>
-#include <tex/unpack.h>
 
 #include "checks/turn.h"
 #include "reference/damage.h"

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/mesh.h>
 #include <tex/pack.h>
-#include <tex/tangents.h>
 
 #include "unit/meshes.h"
 #include "unit/solids.h"

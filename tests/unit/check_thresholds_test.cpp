@@ -13,9 +13,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tex/container.h>
-#include <tex/swizzle.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/pack.h>
 
 #include "checks/centre.h"
 #include "checks/grid.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/compare.h>
+#include <tex/check.h>
 
 #include <algorithm>
 #include <cmath>

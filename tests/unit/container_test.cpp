@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include <cstdlib>
 #include <sstream>
 
 #include <gtest/gtest.h>
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "unit/textures.h"
 
@@ -100,11 +100,11 @@ TEST(Container, IsCompressedAlikeByAnyNumberOfThreads) {
 
 TEST(Container, RefusesOtherFilesFromMemory) {
     const std::vector<std::byte> other(200, std::byte{'x'});
-    const auto texture = decode_file(other.data(), other.size(), "other.dds");
+    const auto texture = read_texture(other, "other.dds");
     ASSERT_FALSE(texture);
     EXPECT_EQ(texture.error().code, ErrorCode::bad_data);
     EXPECT_EQ(texture.error().file, "other.dds");
-    EXPECT_EQ(decode_file(nullptr, 0, "empty").error().reason, "the file is empty");
+    EXPECT_EQ(read_texture(std::span<const std::byte>(), "empty").error().reason, "is empty");
 }
 
 class ContainerFiles : public testing::Test {

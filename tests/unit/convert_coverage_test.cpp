@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "mesh/coverage.h"
 #include "unit/convert_maps.h"

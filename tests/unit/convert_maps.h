@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/convert.h>
+#include <tex/mesh.h>
 
 #include "unit/meshes.h"
 #include "unit/solids.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/convert.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@
 
 #include <gtest/gtest.h>
 #include <tex/pack.h>
-#include <tex/tangents.h>
-#include <tex/unpack.h>
 
 #include "unit/convert_maps.h"
 #include "unit/fields.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/curvature.h>
+#include <tex/surface.h>
 
 #include <cmath>
 #include <functional>

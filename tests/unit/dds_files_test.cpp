@@ -8,8 +8,8 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 #include "unit/textures.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 Result<Texture> decode_shared(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = bytes_of(path);
-    return decode_file(bytes.data(), bytes.size(), path);
+    return read_texture(bytes, path);
 }
 
 TEST(DdsFiles, ReadsEverySharedFile) {

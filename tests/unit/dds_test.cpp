@@ -7,8 +7,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 #include "formats/bytes.h"
 #include "formats/dds/dds_format.h"
@@ -21,7 +21,7 @@ using Bytes = std::vector<std::byte>;
 using testing::HasSubstr;
 
 Result<Texture> decode_bytes(const Bytes& bytes, const ReadOptions& options = {}) {
-    return decode_file(bytes.data(), bytes.size(), "test.dds", options);
+    return read_texture(bytes, "test.dds", options);
 }
 
 Bytes encode(const Texture& texture, const WriteOptions& options = {}) {

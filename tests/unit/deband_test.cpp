@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/deband.h>
+#include <tex/height.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,9 +74,9 @@ int texels_off(const HeightField& in, const HeightField& out, double step, doubl
 
 HeightField debanded(const HeightField& field, DebandReport* report = nullptr, tex::Execution execution = {}) {
     HeightField copy{field.height.clone(), field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
-    const DebandReport found = tex::deband(copy, Deband::on, execution).value();
-    if (report != nullptr) *report = found;
-    return copy;
+    tex::DebandedField found = tex::deband(std::move(copy), Deband::on, execution).value();
+    if (report != nullptr) *report = found.report;
+    return found;
 }
 
 TEST(Deband, RoundsToTheInputOnEveryTexel) {
@@ -202,16 +202,17 @@ TEST(Deband, LeavesHeightsWithoutStepsAlone) {
 
 TEST(Deband, AutoAsksForTerraces) {
     HeightField terraces = field_of({128, 128}, in_8_bits(hills));
-    const DebandReport found = tex::deband(terraces, Deband::automatic).value();
+    const DebandReport found = tex::deband(std::move(terraces), Deband::automatic)->report;
     EXPECT_TRUE(found.applied);
     EXPECT_GT(found.terrace_texels, 128 * 128 / 10);
     HeightField rough = field_of({128, 128}, in_8_bits([](int i, int j) { return noise(i, j); }));
     const Plane<float> before = rough.height.clone();
-    const DebandReport none = tex::deband(rough, Deband::automatic).value();
+    tex::DebandedField same = tex::deband(std::move(rough), Deband::automatic).value();
+    const DebandReport& none = same.report;
     EXPECT_FALSE(none.applied);
     EXPECT_NEAR(none.step, 1.0 / 255.0, 1e-6);
-    EXPECT_TRUE(same_bytes(rough.height, before));
-    EXPECT_EQ(tex::deband(rough, Deband::off).value().codes, 0);
+    EXPECT_TRUE(same_bytes(same.height, before));
+    EXPECT_EQ(tex::deband(std::move(same), Deband::off)->report.codes, 0);
 }
 
 // -- borders and holes ---------------------------------------------------------------------------------------
@@ -252,7 +253,8 @@ TEST(Deband, ReportsProgressUpwardsAndCanBeCancelled) {
     EXPECT_EQ(seen.back(), 1.0);
     for (const double limit : {0.0, 0.1, 0.5, 0.9}) {
         HeightField field{in.height.clone(), 1.0f, 1.0f, Wrap::clamp, Wrap::clamp};
-        const auto result = tex::deband(field, Deband::on, {1, [&](double fraction) { return fraction < limit; }});
+        const auto result =
+            tex::deband(std::move(field), Deband::on, {1, [&](double fraction) { return fraction < limit; }});
         ASSERT_FALSE(result);
         EXPECT_EQ(result.error().code, tex::ErrorCode::cancelled);
     }

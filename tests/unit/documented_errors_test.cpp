@@ -95,7 +95,7 @@ std::vector<Verb> verbs() {
         {"deband",
          [=](const Execution& e) {
              tex::HeightField own = take(fields);
-             return error_of(tex::deband(own, tex::Deband::on, e));
+             return error_of(tex::deband(std::move(own), tex::Deband::on, e));
          }},
         {"height_field",
          [](const Execution& e) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "kernels/encode.h"
 #include "reference/real_maps.h"

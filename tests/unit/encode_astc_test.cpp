@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "blocks/astc_decode.h"
 #include "blocks/astc_plan.h"

@@ -17,7 +17,7 @@
 #include <ImfOutputFile.h>
 #include <ImfTiledOutputFile.h>
 
-#include <tex/image.h>
+#include <tex/types.h>
 
 namespace tex {
 

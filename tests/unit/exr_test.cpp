@@ -22,7 +22,7 @@
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "reference/exr_file.h"
 #include "unit/exr_files.h"

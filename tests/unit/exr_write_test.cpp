@@ -23,7 +23,7 @@
 #include <ImfTiledInputFile.h>
 #include <ImfTiledOutputFile.h>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "reference/exr_file.h"
 #include "unit/exr_files.h"

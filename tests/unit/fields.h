@@ -10,9 +10,8 @@
 #include <cstring>
 #include <functional>
 
-#include <tex/height_field.h>
-#include <tex/mip_chain.h>
-#include <tex/normal_map.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 namespace tex::fields {
 

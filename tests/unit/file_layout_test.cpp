@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "formats/dds/dds.h"
 #include "formats/ktx2/ktx2.h"

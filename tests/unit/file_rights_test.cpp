@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 namespace tex {
 namespace {

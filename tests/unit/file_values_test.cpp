@@ -9,8 +9,8 @@
 #include <optional>
 
 #include <tex/bake.h>
-#include <tex/container.h>
-#include <tex/height_field.h>
+#include <tex/file.h>
+#include <tex/height.h>
 
 #include "formats/exr/exr_rows.h"
 #include "unit/exr_files.h"
@@ -107,20 +107,16 @@ TEST(FileValues, ANoDataValueIsThatOfTheFile) {
     image.planes[0].at(1, 0) = 0.25f;
     HeightOptions options;
     options.fill_invalid = true;
-    HeightReport report;
     options.no_data = 65535.0f;
-    ASSERT_TRUE(height_field(image, options, {}, &report));
-    EXPECT_EQ(report.invalid_texels, 1);
+    EXPECT_EQ(height_field(image, options)->report.invalid_texels, 1);
     options.no_data = 0.25f;
-    ASSERT_TRUE(height_field(image, options, {}, &report));
-    EXPECT_EQ(report.invalid_texels, 1);
+    EXPECT_EQ(height_field(image, options)->report.invalid_texels, 1);
     image.stored = true;
     image.sample = SampleKind::floating;
     image.scale = 0.5;
     image.offset = -3.0;
     options.no_data = 8.0f;  // 1.0 after scale and offset
-    ASSERT_TRUE(height_field(image, options, {}, &report));
-    EXPECT_EQ(report.invalid_texels, 1);
+    EXPECT_EQ(height_field(image, options)->report.invalid_texels, 1);
 }
 
 class Elevations : public testing::Test {
@@ -140,12 +136,11 @@ TEST_F(Elevations, InMetresHaveTheSlopesOfMetres) {
     options.wrap_x = options.wrap_y = Wrap::clamp;
     options.no_data = -32768.0f;
     options.fill_invalid = true;
-    HeightReport report;
-    Result<HeightField> field = height_field(*image, options, {}, &report);
+    Result<PictureHeights> field = height_field(*image, options);
     ASSERT_TRUE(field) << field.error().message();
-    EXPECT_GT(report.invalid_texels, 0);
-    EXPECT_TRUE(report.stored);
-    const Strength strength = strength_from_world(image->extent(), 1.0, 3000.0);
+    EXPECT_GT(field->report.invalid_texels, 0);
+    EXPECT_TRUE(field->report.stored);
+    const Strength strength = strength_from_world(image->extent(), 1.0, 3000.0).value();
     field->bumpiness_x = strength.x;
     field->bumpiness_y = strength.y;
     const NormalMap map = *bake(*field, {});

@@ -9,9 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/convert.h>
-#include <tex/mesh_io.h>
-#include <tex/mesh_selection.h>
+#include <tex/mesh.h>
 
 #include "mesh/gltf.h"
 #include "mesh/uv_transform.h"

@@ -5,7 +5,7 @@
 //
 // Each file has one texture: 6x5 texels and a level of 3x2; the k-th byte of level l is 7 k + 64 l + 1.
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include <fstream>
 #include <sstream>

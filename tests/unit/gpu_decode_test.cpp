@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
-#include <tex/height_field.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
+#include <tex/height.h>
 
 #include "bench/decode_rules.h"
 #include "unit/packing.h"

@@ -14,11 +14,10 @@
 
 #include <gtest/gtest.h>
 
-#include <tex/compare.h>
-#include <tex/container.h>
-#include <tex/integrate.h>
+#include <tex/check.h>
+#include <tex/file.h>
 #include <tex/pack.h>
-#include <tex/source.h>
+#include <tex/surface.h>
 
 #include "unit/normal_maps.h"
 #include "unit/streams.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/heat_map.h>
+#include <tex/check.h>
 
 #include <gtest/gtest.h>
 

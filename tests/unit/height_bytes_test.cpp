@@ -6,20 +6,19 @@
 
 #include <filesystem>
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 namespace tex {
 namespace {
 
-Result<HeightField> height(float r, float g, float b, HeightChannel channel, HeightReport* report = nullptr,
-                           int bits = 8) {
+Result<PictureHeights> height(float r, float g, float b, HeightChannel channel, int bits = 8) {
     Image image;
     image.names = {"R", "G", "B"};
     image.bits = bits;
     for (const float code : {r, g, b}) image.planes.emplace_back(Extent{1, 1}, code / 255.0f);
     HeightOptions options;
     options.channel = channel;
-    return height_field(image, options, {}, report);
+    return height_field(image, options);
 }
 
 TEST(HeightBytes, AreTheHeightsOfTheFormulas) {
@@ -39,19 +38,14 @@ TEST(HeightBytes, EveryCodeIsExact) {
 }
 
 TEST(HeightBytes, ImplausibleOnesAreCounted) {
-    HeightReport report;
-    ASSERT_TRUE(height(255, 255, 255, HeightChannel::terrain_rgb, &report));
-    EXPECT_EQ(report.implausible_texels, 1);
-    ASSERT_TRUE(height(0, 0, 0, HeightChannel::terrarium, &report));
-    EXPECT_EQ(report.implausible_texels, 1);
-    ASSERT_TRUE(height(130, 0, 0, HeightChannel::terrarium, &report));
-    EXPECT_EQ(report.implausible_texels, 0);
-    ASSERT_TRUE(height(9, 9, 0, HeightChannel::rg16, &report));
-    EXPECT_EQ(report.implausible_texels, 1);
+    EXPECT_EQ(height(255, 255, 255, HeightChannel::terrain_rgb)->report.implausible_texels, 1);
+    EXPECT_EQ(height(0, 0, 0, HeightChannel::terrarium)->report.implausible_texels, 1);
+    EXPECT_EQ(height(130, 0, 0, HeightChannel::terrarium)->report.implausible_texels, 0);
+    EXPECT_EQ(height(9, 9, 0, HeightChannel::rg16)->report.implausible_texels, 1);
 }
 
 TEST(HeightBytes, NeedEightBits) {
-    const auto deep = height(1, 2, 3, HeightChannel::terrarium, nullptr, 16);
+    const auto deep = height(1, 2, 3, HeightChannel::terrarium, 16);
     ASSERT_FALSE(deep);
     EXPECT_EQ(deep.error().code, ErrorCode::bad_option);
     EXPECT_EQ(deep.error().reason, "the picture has not the 8 bits that heights as \"terrarium\" have");
@@ -63,7 +57,7 @@ TEST(HeightBytes, TilesOfMapServersAreRead) {
     const auto texel = [&](const char* file, HeightChannel channel) {
         HeightOptions options;
         options.channel = channel;
-        const Result<HeightField> field = height_field(*read_image(folder + file), options);
+        const Result<PictureHeights> field = height_field(*read_image(folder + file), options);
         return field ? field->height.at(20, 30) : -1e9f;
     };
     // From the bytes that oiiotool prints: 1 187 98 and 133 70 160.

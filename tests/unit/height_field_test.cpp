@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,6 @@ using tex::Extent;
 using tex::HeightChannel;
 using tex::HeightField;
 using tex::HeightOptions;
-using tex::HeightReport;
 using tex::Image;
 using tex::Plane;
 using tex::Wrap;
@@ -123,10 +122,9 @@ TEST(HeightField, AutomaticTakesLumaOnlyWhereColoursDifferAndCounts) {
     image.planes[1].at(36, 0) = 0.0f;
     image.planes[2].at(20, 4) = 1.0f;
     tex::on_every_target([&] {
-        HeightReport report;
-        const HeightField field = tex::height_field(image, {}, {}, &report).value();
-        EXPECT_EQ(report.luma_texels, 2);
-        EXPECT_EQ(report.invalid_texels, 0);
+        const tex::PictureHeights field = tex::height_field(image).value();
+        EXPECT_EQ(field.report.luma_texels, 2);
+        EXPECT_EQ(field.report.invalid_texels, 0);
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 37; ++i) {
                 if ((i == 36 && j == 0) || (i == 20 && j == 4)) continue;
@@ -206,9 +204,9 @@ TEST(HeightField, FillsAcrossTheBorderOfItsWrapAndCounts) {
     image.planes[0].at(4, 0) = 2.0f;
     HeightOptions options;
     options.fill_invalid = true;
-    HeightReport report;
-    EXPECT_EQ(tex::height_field(image, options, {}, &report).value().height.at(7, 0), 1.0f);
-    EXPECT_EQ(report.invalid_texels, 6);
+    const tex::PictureHeights filled = tex::height_field(image, options).value();
+    EXPECT_EQ(filled.height.at(7, 0), 1.0f);
+    EXPECT_EQ(filled.report.invalid_texels, 6);
     options.wrap_x = Wrap::clamp;
     EXPECT_EQ(tex::height_field(image, options).value().height.at(7, 0), 2.0f);
 }

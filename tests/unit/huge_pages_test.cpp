@@ -8,7 +8,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <tex/image.h>
+#include <tex/types.h>
 
 namespace tex {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,6 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
-
-#include <tex/container.h>
 
 namespace tex {
 namespace {

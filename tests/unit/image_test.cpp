@@ -7,8 +7,7 @@
 #include <new>
 #include <utility>
 
-#include <tex/image.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex {
 namespace {

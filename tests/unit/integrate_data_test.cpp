@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // integrate() after bake() on real height maps: DEMs in metres, 8-bit terraces, sensor noise.
 
-#include <tex/integrate.h>
+#include <tex/surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "unit/textures.h"
 

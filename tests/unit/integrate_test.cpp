@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/integrate.h>
+#include <tex/surface.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "kernels/slopes.h"
 #include "reference/bake.h"

@@ -8,9 +8,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tex/container.h>
-#include <tex/swizzle.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/pack.h>
 
 #include "formats/bytes.h"
 #include "unit/textures.h"
@@ -21,7 +21,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using testing::HasSubstr;
 
-Result<Texture> decode_bytes(const Bytes& bytes) { return decode_file(bytes.data(), bytes.size(), "test.ktx2"); }
+Result<Texture> decode_bytes(const Bytes& bytes) { return read_texture(bytes, "test.ktx2"); }
 
 Bytes encode(const Texture& texture) {
     Result<Bytes> bytes = encode_file(texture, Container::ktx2);

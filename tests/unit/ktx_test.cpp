@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 namespace tex {
 namespace {
@@ -39,7 +39,7 @@ public:
     [[nodiscard]] Result<Texture> read(const std::string& layer = {}) const {
         ReadOptions options;
         options.layer = layer;
-        return decode_file(bytes_.data(), bytes_.size(), "a.ktx", options);
+        return read_texture(bytes_, "a.ktx", options);
     }
     [[nodiscard]] std::string reason() const {
         const auto texture = read();
@@ -147,8 +147,9 @@ TEST(Ktx, RefusesWhatIsDamagedOrUnknown) {
               "big-endian texels are not supported");
     std::vector<std::byte> bytes = rg8({2, 1, 0, 0, 1, 1, 0}).u32(4).data("abcd").bytes();
     bytes[12] = std::byte{7};
-    EXPECT_EQ(decode_file(bytes.data(), bytes.size(), "a").error().code, ErrorCode::bad_data);
-    for (std::size_t size = 12; size < bytes.size(); ++size) EXPECT_FALSE(decode_file(bytes.data(), size, "a"));
+    EXPECT_EQ(read_texture(bytes, "a").error().code, ErrorCode::bad_data);
+    for (std::size_t size = 12; size < bytes.size(); ++size)
+        EXPECT_FALSE(read_texture(std::span(bytes).first(size), "a"));
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
-#include <tex/unpack.h>
+#include <tex/file.h>
+#include <tex/pack.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
@@ -107,7 +107,7 @@ TEST(Layers, AllLevelsAreThoseOfTheLayer) {
         for (unsigned layer = 0; layer < 3; ++layer) {
             ReadOptions options;
             options.layer = std::to_string(layer);
-            const auto texture = decode_file(file.data(), file.size(), "a", options);
+            const auto texture = read_texture(file, "a", options);
             ASSERT_TRUE(texture) << texture.error().message();
             ASSERT_EQ(texture->levels.size(), 2u);
             EXPECT_EQ(texture->levels[0].bytes, std::vector<std::byte>(64, static_cast<std::byte>(layer + 1)));
@@ -128,17 +128,17 @@ TEST(Layers, WhatTheFileDoesNotHaveIsRefused) {
     std::vector<std::byte> dds = array_of_three(Container::dds, 0);
     ReadOptions last;
     last.layer = "2";
-    const auto cut = decode_file(dds.data(), dds.size() - 1, "a", last);
+    const auto cut = read_texture(std::span(dds).first(dds.size() - 1), "a", last);
     ASSERT_FALSE(cut);
     EXPECT_EQ(cut.error().reason, "truncated: the file ends before layer 2 is complete");
     put_u32(dds, 140, 0xFFFFFFFF);  // more layers than there are
     last.layer = "4000000000";
-    EXPECT_EQ(decode_file(dds.data(), dds.size(), "a", last).error().code, ErrorCode::bad_data);
+    EXPECT_EQ(read_texture(dds, "a", last).error().code, ErrorCode::bad_data);
     last.layer = "0";
-    EXPECT_TRUE(decode_file(dds.data(), dds.size(), "a", last));
+    EXPECT_TRUE(read_texture(dds, "a", last));
     std::vector<std::byte> ktx2 = array_of_three(Container::ktx2, 0);
     put_u32(ktx2, 32, 4);
-    const auto wrong = decode_file(ktx2.data(), ktx2.size(), "a", last);
+    const auto wrong = read_texture(ktx2, "a", last);
     ASSERT_FALSE(wrong);
     EXPECT_EQ(wrong.error().reason, "level 0 has 192 bytes instead of 4 times 64");
 }

@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <tex/check.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/mip.h>
+#include <tex/pack.h>
 #include <tex/pipeline.h>
-#include <tex/unpack.h>
 
 #include "unit/normal_maps.h"
 #include "unit/streams.h"

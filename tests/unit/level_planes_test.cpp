@@ -6,7 +6,7 @@
 #include <functional>
 
 #include <gtest/gtest.h>
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "unit/textures.h"
 

@@ -12,13 +12,11 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/blend.h>
 #include <tex/check.h>
-#include <tex/convert.h>
-#include <tex/image_io.h>
-#include <tex/mesh_io.h>
+#include <tex/file.h>
+#include <tex/mesh.h>
 #include <tex/pack.h>
-#include <tex/scale.h>
-#include <tex/tangents.h>
 
 #include "checks/mesh_seams.h"
 #include "mesh/coverage.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 #include <unistd.h>
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh_selection.h>
+#include <tex/mesh.h>
 
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <tex/tangents.h>
 
 #include "unit/meshes.h"
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include <gtest/gtest.h>
-#include <tex/tangents.h>
 
 #include "unit/meshes.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/model.h>
+#include <tex/mesh.h>
 
 #include <unistd.h>
 
@@ -14,10 +14,9 @@
 
 #include <gtest/gtest.h>
 #include <tex/check.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pack.h>
 #include <tex/pipeline.h>
-#include <tex/source.h>
 
 #include "unit/gltf_files.h"
 

@@ -2,7 +2,7 @@
 
 #include "surface/nearest.h"
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/color.h>
-#include <tex/height_field.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
+#include <tex/height.h>
 #include <unistd.h>
 
 namespace tex {
@@ -178,10 +177,9 @@ TEST_F(NoData, MakesHeightsInvalidUnlessTheOptionsSayOtherwise) {
     EXPECT_EQ(refused.error().reason, "1 height is NaN, infinite or no-data, the first at column 2, row 0");
     EXPECT_EQ(refused.error().detail, ErrorDetail::missing_heights);
     options.fill_invalid = true;
-    HeightReport report;
-    const auto filled = height_field(image, options, {}, &report);
+    const auto filled = height_field(image, options);
     ASSERT_TRUE(filled);
-    EXPECT_EQ(report.invalid_texels, 1);
+    EXPECT_EQ(filled->report.invalid_texels, 1);
     EXPECT_GT(filled->height.at(2, 0), 0.0f);
     options = {};
     options.no_data = 4.0f;  // another value replaces that of the file

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include <tex/mip_chain.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 namespace tex {
 

@@ -135,7 +135,7 @@ TEST_F(NormalMark, OfDdsIsInReservedWordsThatNobodyElseUses) {
         }
     }
     with[48] = std::byte{'?'};
-    const auto damaged = decode_file(with.data(), with.size(), "x.dds");
+    const auto damaged = read_texture(with, "x.dds");
     ASSERT_TRUE(damaged);
     EXPECT_FALSE(damaged->swizzle_known);
     EXPECT_THAT(damaged->remarks, testing::ElementsAre(HasSubstr("libtex.normal was not understood")));

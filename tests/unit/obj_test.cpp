@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 namespace tex {
 namespace {

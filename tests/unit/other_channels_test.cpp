@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tex/blend.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pipeline.h>
 
 #include "stream/pack_stream.h"

@@ -12,11 +12,9 @@
 #include <gtest/gtest.h>
 
 #include <tex/blend.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/mip.h>
 #include <tex/pipeline.h>
-#include <tex/scale.h>
-#include <tex/source.h>
 
 #include "unit/normal_maps.h"
 #include "unit/streams.h"

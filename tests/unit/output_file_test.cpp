@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "stream/bake_stream.h"
 #include "stream/pack_stream.h"

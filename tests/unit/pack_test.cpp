@@ -276,10 +276,52 @@ TEST(Pack, EncodeBlocksGivesTheSameBytesWithAnyStrideAndPitch) {
             constexpr std::size_t kRow = 10 * 16;
             constexpr std::size_t kPitch = kRow + 8;
             std::vector<std::byte> blocks(4 * kPitch);
-            tex::encode_blocks({x.data(), {37, 14}, 41}, {y.data(), {37, 14}, 45}, options, blocks.data(), kPitch);
+            ASSERT_TRUE(
+                tex::encode_blocks({x.data(), {37, 14}, 41}, {y.data(), {37, 14}, 45}, options, blocks.data(), kPitch));
             for (std::size_t k = 0; k < packed.size(); ++k)
                 ASSERT_EQ(packed[k], blocks[k / kRow * kPitch + k % kRow]) << k;
         }
+    }
+}
+
+TEST(EncodeBlocks, RefusesWhatDoesNotFit) {
+    const tex::Plane<float> plane({8, 8}), other({4, 8});
+    std::vector<std::byte> blocks(64);
+    const auto code = [&](const tex::Plane<float>& y, Encoding encoding, std::size_t pitch) {
+        return tex::encode_blocks(plane.view(), y.view(), {encoding}, blocks.data(), pitch).error().code;
+    };
+    EXPECT_EQ(code(other, Encoding::bc5, 32), tex::ErrorCode::bad_option);
+    EXPECT_EQ(code(plane, Encoding::rgb8, 32), tex::ErrorCode::bad_option);
+    EXPECT_EQ(code(plane, Encoding::bc5, 31), tex::ErrorCode::bad_option);
+}
+
+// Rows with other texels beside them, which must stay; the blocks at the right and at the bottom are cut.
+TEST(DecodeBlocks, GiveTheTexelsOfDecode) {
+    const tex::MipChain chain = chain_of(bumpy({38, 14}, 3));
+    for (const Encoding encoding :
+         {Encoding::bc5, Encoding::dxt5nm, Encoding::astc_5x4, Encoding::rgb8, Encoding::half}) {
+        const auto texture = tex::pack(chain, {encoding}).value();
+        const auto wanted = tex::decode(texture, 0).value();
+        const int channels = tex::format_info(texture.format).channels;
+        constexpr std::ptrdiff_t kStride = 41;
+        std::vector<float> rows(static_cast<std::size_t>(4 * 14 * kStride), -7.0f);
+        std::array<tex::PlaneView<float>, 4> views;
+        for (int c = 0; c < channels; ++c)
+            views[static_cast<std::size_t>(c)] = {rows.data() + c * 14 * kStride, {38, 14}, kStride};
+        const std::size_t pitch = tex::level_bytes(texture.format, {38, 1});
+        ASSERT_TRUE(tex::decode_blocks(texture.format, texture.levels[0].bytes.data(), pitch, views));
+        for (int c = 0; c < channels; ++c) {
+            for (int j = 0; j < 14; ++j) {
+                for (int i = 0; i < 38; ++i)
+                    ASSERT_EQ(views[static_cast<std::size_t>(c)].at(i, j),
+                              wanted.planes[static_cast<std::size_t>(c)].at(i, j));
+                for (int i = 38; i < kStride; ++i)
+                    ASSERT_EQ(rows[static_cast<std::size_t>((c * 14 + j) * kStride + i)], -7.0f);
+            }
+        }
+        EXPECT_FALSE(tex::decode_blocks(texture.format, texture.levels[0].bytes.data(), pitch - 1, views));
+        views[1].stride = 40;
+        EXPECT_FALSE(tex::decode_blocks(texture.format, texture.levels[0].bytes.data(), pitch, views));
     }
 }
 

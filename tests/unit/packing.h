@@ -51,7 +51,7 @@ inline MipChain chain_of(NormalMap map) {
 inline std::vector<std::byte> pack_bytes(const MipChain& chain, const tex::PackOptions& options, int threads = 1) {
     tex::Execution execution;
     execution.threads = threads;
-    const tex::Result<tex::Texture> texture = tex::pack(chain, options, execution);
+    const tex::Result<tex::PackedTexture> texture = tex::pack(chain, options, execution);
     EXPECT_TRUE(texture);
     std::vector<std::byte> bytes;
     for (const tex::Level& level : texture->levels) bytes.insert(bytes.end(), level.bytes.begin(), level.bytes.end());

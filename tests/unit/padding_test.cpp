@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 #include <tex/check.h>
+#include <tex/mesh.h>
 #include <tex/pack.h>
-#include <tex/tangents.h>
 
 #include "mesh/charts.h"
 

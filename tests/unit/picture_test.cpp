@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 namespace tex {
 namespace {

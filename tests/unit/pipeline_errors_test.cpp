@@ -61,7 +61,7 @@ TEST_F(PipelineErrors, HeightsThatCannotBeUsedAreTheSameErrors) {
     options_.color.space = "nonsense";
     Image copy = read_image(input).value();
     EXPECT_EQ(bake_file(input, path("out"), Container::dds, options_).error().message(),
-              to_linear(copy, options_.color).error().message());
+              to_linear(std::move(copy), options_.color).error().message());
     options_.color.space.clear();
     const std::string dot = write("dot.png", make_png({1, 1}));
     options_.heights.fill_invalid = true;
@@ -70,8 +70,7 @@ TEST_F(PipelineErrors, HeightsThatCannotBeUsedAreTheSameErrors) {
               height_field(read_image(dot).value(), options_.heights).error().message());
     options_.heights = {};
     const auto report = bake_file(input, path("out"), Container::dds, options_);
-    HeightReport counted;
-    ASSERT_TRUE(height_field(image, options_.heights, {}, &counted));
+    const HeightReport counted = height_field(image, options_.heights)->report;
     EXPECT_EQ(report.value().heights.luma_texels, counted.luma_texels);
     EXPECT_GT(counted.luma_texels, 0);
 }

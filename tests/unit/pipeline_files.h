@@ -20,7 +20,7 @@
 #include <ImfTiledOutputFile.h>
 #include <half.h>
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 #include <tex/pipeline.h>
 
 #include "stream/bake_stream.h"
@@ -129,8 +129,7 @@ protected:
     [[nodiscard]] Image linear(const std::string& input) const {
         Image image = read_image(input).value();
         if (options_.color.space.empty()) return image;
-        EXPECT_TRUE(to_linear(image, options_.color));
-        return image;
+        return to_linear(std::move(image), options_.color).value();
     }
 
     // The result of calling the verbs on a picture one after the other.

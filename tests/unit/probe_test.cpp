@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/probe.h>
+#include <tex/file.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,8 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <unistd.h>
-
-#include <tex/image_io.h>
 
 namespace tex {
 namespace {

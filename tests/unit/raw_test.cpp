@@ -7,8 +7,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include <tex/container.h>
-#include <tex/height_field.h>
+#include <tex/file.h>
+#include <tex/height.h>
 
 namespace tex {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"

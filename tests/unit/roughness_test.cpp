@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/roughness.h>
+#include <tex/mip.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "reference/roughness.h"
 #include "unit/fields.h"

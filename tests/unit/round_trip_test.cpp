@@ -8,10 +8,9 @@
 #include <utility>
 
 #include <gtest/gtest.h>
-#include <tex/compare.h>
-#include <tex/container.h>
+#include <tex/check.h>
+#include <tex/file.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "unit/textures.h"
 

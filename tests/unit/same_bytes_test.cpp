@@ -4,7 +4,7 @@
 // bit. If a formula changes on purpose, its hash changes too.
 
 #include <tex/bake.h>
-#include <tex/height_field.h>
+#include <tex/height.h>
 #include <tex/mip.h>
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/scale.h>
+#include <tex/blend.h>
 
 #include <cmath>
 #include <optional>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 #include <tex/bake.h>
-#include <tex/compare.h>
+#include <tex/check.h>
 
 #include "reference/scale.h"
 #include "unit/fields.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "rays/box_tree.h"
 #include "rays/hemisphere.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <unistd.h>
 
 #include "rows/blend_rows.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/sheet.h>
+#include <tex/preview.h>
 
 #include <cmath>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <unistd.h>
 
 #include "unit/preview_pictures.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <tex/mesh.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "unit/meshes.h"
 

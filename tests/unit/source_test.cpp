@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/source.h>
+#include <tex/file.h>
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <fstream>
 
-#include <tex/container.h>
-#include <tex/image_io.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
 

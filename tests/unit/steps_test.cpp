@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Steps that are joined make the bytes that they make one after the other, with float EXR files in between.
 
-#include <tex/steps.h>
+#include <tex/pipeline.h>
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,6 @@
 
 #include <gtest/gtest.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 namespace tex {
 namespace {

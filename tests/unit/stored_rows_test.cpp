@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "unit/targets.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "unit/transfers.h"
 

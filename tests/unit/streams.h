@@ -14,8 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tex/names.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "unit/textures.h"
 

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <libdeflate.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <zstd.h>
 
 #include "files/input_file.h"
@@ -98,7 +98,7 @@ Result<Bytes> in_rows(RowSource& level, Format format) {
 
 // Reads a file at once and in rows. Both must agree.
 Result<Texture> read(const Bytes& bytes) {
-    Result<Texture> texture = decode_file(bytes.data(), bytes.size(), "test.ktx2");
+    Result<Texture> texture = read_texture(bytes, "test.ktx2");
     Result<InputFile> file = InputFile::from_memory("test.ktx2", bytes);
     if (!file) return file.error();
     const Result<TextureRows> rows = open_texture_rows(*file, {});

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 namespace tex {
 namespace {

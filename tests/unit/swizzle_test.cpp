@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <span>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pack.h>
 
 #include "reference/astc_block.h"

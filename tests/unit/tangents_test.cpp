@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include <cmath>
 #include <cstdint>
@@ -13,7 +13,6 @@
 #include <string>
 
 #include <gtest/gtest.h>
-#include <tex/mesh_io.h>
 
 #include "unit/meshes.h"
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/container.h>
+#include <tex/file.h>
+#include <tex/format.h>
 #include <tex/pipeline.h>
-#include <tex/texture.h>
 
 namespace tex {
 namespace {

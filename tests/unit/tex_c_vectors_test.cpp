@@ -91,17 +91,17 @@ TEST(TexCSurface, DebandsAsTheVerbDoes) {
             });
             CallerPlane heights(field.height);
             field.wrap_x = field.wrap_y = static_cast<tex::Wrap>(wrap);
-            const auto wanted = tex::deband(field);
+            const auto wanted = tex::deband(std::move(field));
             ASSERT_TRUE(wanted);
             const tex_plane plane = heights.view();
             tex_deband_report report = {};
             report.size = sizeof report;
             Scratch scratch(tex_deband_size(extent.width, extent.height));
             ASSERT_EQ(tex_deband(&plane, wrap, wrap, 1, &report, scratch.data(), scratch.size()), TEX_OK);
-            heights.expect(field.height, 0, extent.height);
-            EXPECT_EQ(report.applied == 1, wanted->applied);
-            EXPECT_EQ(report.codes, wanted->codes);
-            EXPECT_EQ(report.terrace_texels, wanted->terrace_texels);
+            heights.expect(wanted->height, 0, extent.height);
+            EXPECT_EQ(report.applied == 1, wanted->report.applied);
+            EXPECT_EQ(report.codes, wanted->report.codes);
+            EXPECT_EQ(report.terrace_texels, wanted->report.terrace_texels);
         }
     }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <gtest/gtest.h>
-#include <tex/texture.h>
+#include <tex/format.h>
 
 #include "unit/textures.h"
 

@@ -13,9 +13,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/mip_chain.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 namespace tex {
 

@@ -10,7 +10,7 @@
 #include <array>
 #include <cstring>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "formats/claims.h"
 #include "formats/codecs.h"

@@ -10,7 +10,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_rows.h"

@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
-#include <tex/image_io.h>
-#include <tex/transfer.h>
+#include <tex/file.h>
+#include <tex/mesh.h>
 
 #include "unit/textures.h"
 #include "unit/transfers.h"

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/convert.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "unit/transfers.h"
 

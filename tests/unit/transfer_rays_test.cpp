@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "mesh/vectors.h"
 #include "rays/ray_directions.h"

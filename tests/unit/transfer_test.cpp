@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,6 @@
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
-#include <tex/convert.h>
-#include <tex/tangents.h>
 
 #include "unit/targets.h"
 #include "unit/transfers.h"

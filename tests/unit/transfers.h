@@ -9,8 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/tangents.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "unit/convert_maps.h"
 

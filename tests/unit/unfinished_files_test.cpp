@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 namespace tex {
 namespace {

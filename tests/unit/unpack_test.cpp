@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include <cmath>
 #include <cstring>

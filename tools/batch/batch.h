@@ -14,7 +14,7 @@
 #include <tuple>
 #include <vector>
 
-#include <tex/steps.h>
+#include <tex/pipeline.h>
 
 #include "batch/plan.h"
 #include "cli/programs.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "options/files.h"
 #include "options/output.h"

@@ -20,8 +20,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/names.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "cli/console.h"
 #include "cli/exit_code.h"

@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include <tex/names.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

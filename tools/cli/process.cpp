@@ -18,7 +18,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "cli/exit_code.h"
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <string>
 
-#include <tex/container.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

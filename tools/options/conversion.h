@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <tex/convert.h>
+#include <tex/mesh.h>
 
 #include "cli/command.h"
 #include "options/tangent_space.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "cli/command.h"
 

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -40,11 +40,12 @@ Result<void> ColorGroup::check() const {
     Image texel;
     texel.planes.emplace_back(Extent{1, 1}, 0.5f);
     texel.names = {"Y"};
-    auto converted = to_linear(texel, options());
+    const auto converted = to_linear(std::move(texel), options());
     if (!converted && converted.error().code == ErrorCode::bad_option) {
         throw UsageError("--color-space", fmt::format("{}", converted.error().reason));
     }
-    return converted;
+    if (!converted) return converted.error();
+    return {};
 }
 
 std::vector<std::string> ColorGroup::files() const {
@@ -93,8 +94,8 @@ void StrengthOptions::add(Command& command, bool can_measure) {
 }
 
 Strength StrengthOptions::strength(Extent extent) const {
-    if (height_range) return strength_from_world(extent, *height_range, width, height);
-    if (uv_height) return strength_from_uv(extent, *uv_height);
+    if (height_range) return strength_from_world(extent, *height_range, width, height).value();
+    if (uv_height) return strength_from_uv(extent, *uv_height).value();
     return {bumpiness, bumpiness};
 }
 

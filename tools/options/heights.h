@@ -9,9 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/bake_options.h>
-#include <tex/color.h>
-#include <tex/height_field.h>
+#include <tex/bake.h>
+#include <tex/height.h>
 
 #include "cli/command.h"
 #include "tasks/job.h"

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/image_io.h>
-#include <tex/source.h>
-#include <tex/tangents.h>
+#include <tex/file.h>
+#include <tex/mesh.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

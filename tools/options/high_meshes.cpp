@@ -7,8 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/mesh_io.h>
-#include <tex/mesh_selection.h>
+#include <tex/mesh.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

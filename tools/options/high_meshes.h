@@ -10,8 +10,6 @@
 #include <vector>
 
 #include <tex/mesh.h>
-#include <tex/mesh_selection.h>
-#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "options/mesh_files.h"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/roughness.h>
-#include <tex/sheet.h>
+#include <tex/mip.h>
+#include <tex/preview.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

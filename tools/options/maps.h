@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/execution.h>
-#include <tex/image.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "cli/command.h"
 #include "options/files.h"

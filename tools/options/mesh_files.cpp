@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 namespace tex::cli {
 

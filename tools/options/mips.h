@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 #include <tex/mip.h>
 
 #include "cli/command.h"

@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <tex/image.h>
-#include <tex/transfer.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

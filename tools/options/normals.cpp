@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

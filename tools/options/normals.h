@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/source.h>
+#include <tex/file.h>
 
 #include "cli/command.h"
 #include "tasks/job.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pack.h>
 
 #include "cli/command.h"

@@ -10,11 +10,9 @@
 #include <vector>
 
 #include <tex/check.h>
-#include <tex/compare.h>
-#include <tex/image_io.h>
-#include <tex/mip_chain.h>
-#include <tex/source.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "cli/command.h"
 #include "cli/json.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "cli/command.h"
 #include "options/high_meshes.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/integrate.h>
 #include <tex/pack.h>
+#include <tex/surface.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "cli/command.h"
 #include "options/conversion.h"

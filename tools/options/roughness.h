@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <tex/mip.h>
 #include <tex/pipeline.h>
-#include <tex/roughness.h>
 
 #include "cli/command.h"
 #include "options/files.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

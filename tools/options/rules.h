@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <tex/check.h>
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include "cli/command.h"
 #include "options/check_config.h"

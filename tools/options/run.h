@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "cli/command.h"
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/color.h>
-#include <tex/convert.h>
-#include <tex/image_io.h>
+#include <tex/file.h>
+#include <tex/height.h>
+#include <tex/mesh.h>
 #include <tex/mip.h>
 
 #include "cli/text.h"
@@ -275,7 +275,8 @@ Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Ex
         auto image = read_image(*path, job.read_options);
         if (!image) return image.error();
         if (image->sample != SampleKind::floating) {
-            if (auto linear = to_linear(*image, {"sRGB", {}}); !linear) return linear.error().of(*path);
+            image = to_linear(std::move(*image), {"sRGB", {}});
+            if (!image) return image.error().of(*path);
         }
         *target = std::move(*image);
     }
@@ -286,10 +287,9 @@ Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Ex
         options.deband = deband;
         options.wrap_x = preview.wrap_x;
         options.wrap_y = preview.wrap_y;
-        HeightReport found;
-        auto field = height_field(*image, options, execution, &found);
+        auto field = height_field(*image, options, execution);
         if (!field) return field.error().of(height);
-        if (deband != Deband::off) note_deband(job, found.deband, deband, height);
+        if (deband != Deband::off) note_deband(job, field->report.deband, deband, height);
         files.height = std::move(field->height);
     }
     return files;

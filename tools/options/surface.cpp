@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/heat_map.h>
+#include <tex/check.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/curvature.h>
-#include <tex/integrate.h>
-#include <tex/source.h>
+#include <tex/file.h>
+#include <tex/surface.h>
 
 #include "cli/command.h"
 #include "options/heights.h"

@@ -8,8 +8,7 @@
 #include <limits>
 
 #include <fmt/format.h>
-#include <tex/mesh_io.h>
-#include <tex/model.h>
+#include <tex/mesh.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

@@ -12,10 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include <tex/convert_options.h>
-#include <tex/execution.h>
-#include <tex/image_io.h>
-#include <tex/mesh_selection.h>
+#include <tex/file.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 #include "cli/command.h"
 #include "options/mesh_files.h"

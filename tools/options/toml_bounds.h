@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

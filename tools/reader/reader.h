@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/reader/reader_protocol.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "cli/text_file.h"
 #include "cli/usage_error.h"

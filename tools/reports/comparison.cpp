@@ -6,9 +6,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/container.h>
-#include <tex/heat_map.h>
-#include <tex/sheet.h>
+#include <tex/check.h>
+#include <tex/file.h>
+#include <tex/preview.h>
 
 #include "cli/json.h"
 #include "cli/text.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/compare.h>
+#include <tex/check.h>
 
 #include "cli/command.h"
 #include "cli/json.h"

@@ -3,9 +3,8 @@
 #include "reports/curve.h"
 
 #include <fmt/format.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pack.h>
-#include <tex/unpack.h>
 
 #include "cli/json.h"
 

@@ -7,10 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <tex/compare.h>
-#include <tex/execution.h>
-#include <tex/mip_chain.h>
-#include <tex/pack_options.h>
+#include <tex/check.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
 #include "cli/console.h"
 #include "cli/exit_code.h"

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "cli/text.h"
 #include "reports/fixes.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "cli/text.h"
 #include "options/output.h"

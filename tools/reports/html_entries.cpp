@@ -5,10 +5,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/heat_map.h>
+#include <tex/check.h>
+#include <tex/format.h>
 #include <tex/preview.h>
-#include <tex/sheet.h>
-#include <tex/swizzle.h>
 
 #include "reports/findings.h"
 #include "reports/fixes.h"

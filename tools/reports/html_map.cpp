@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
 #include <tex/preview.h>
-#include <tex/sheet.h>
-#include <tex/unpack.h>
 
 #include "reports/html.h"
 

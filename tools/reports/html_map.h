@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <tex/convert_options.h>
-#include <tex/execution.h>
-#include <tex/mip_chain.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 #include "cli/json.h"
 #include "reports/html_mesh.h"

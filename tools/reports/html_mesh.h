@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/convert_options.h>
+#include <tex/mesh.h>
 
 #include "cli/json.h"
 

@@ -17,7 +17,6 @@
 #include <vector>
 
 #include <tex/check.h>
-#include <tex/compare.h>
 
 #include "reports/html_map.h"
 

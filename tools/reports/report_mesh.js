@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws meshes on the reader's GPU as preview-normals --mesh does: the same camera, decoders, filter and light
-// (tex/preview.h, tex/convert_options.h). Where a pixel shows several triangles, the picture is smoothed with fewer
+// (tex/preview.h, tex/mesh.h). Where a pixel shows several triangles, the picture is smoothed with fewer
 // samples than there.
 
 const kMeshVertexShader = `#version 300 es

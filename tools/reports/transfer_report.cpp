@@ -7,10 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tex/container.h>
+#include <tex/file.h>
+#include <tex/format.h>
 #include <tex/preview.h>
-#include <tex/sheet.h>
-#include <tex/swizzle.h>
 
 #include "cli/text.h"
 #include "cli/text_file.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <tex/texture.h>
-#include <tex/transfer.h>
+#include <tex/format.h>
+#include <tex/mesh.h>
 
 #include "cli/command.h"
 #include "options/high_meshes.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tex/check.h>
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "cli/command.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "cli/glob.h"
 

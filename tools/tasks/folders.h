@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/height_field.h>
-#include <tex/result.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/execution.h>
+#include <tex/file.h>
 #include <tex/pipeline.h>
+#include <tex/types.h>
 
 #include "cli/console.h"
 #include "cli/exit_code.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 namespace tex::cli {
 namespace {

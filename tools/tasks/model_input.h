@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/model.h>
+#include <tex/mesh.h>
 
 #include "cli/json.h"
 #include "tasks/udim.h"

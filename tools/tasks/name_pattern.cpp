@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

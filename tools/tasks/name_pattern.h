@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 namespace tex::cli {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "cli/console.h"
 #include "cli/exit_code.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "tasks/grid.h"
 #include "tasks/model_input.h"

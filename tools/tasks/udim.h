@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "tasks/grid.h"
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <string>
 
-#include <tex/container.h>
+#include <tex/file.h>
+#include <tex/format.h>
 #include <tex/pipeline.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/types.h>
 
 #include "tasks/job.h"
 

@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <unistd.h>
 
 #include "cli/json.h"

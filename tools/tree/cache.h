@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "cli/console.h"
 #include "tree/recipe.h"

@@ -14,7 +14,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <tex/container.h>
+#include <tex/file.h>
 #include <unistd.h>
 
 #include "cli/text.h"

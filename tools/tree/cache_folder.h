@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

@@ -9,8 +9,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-#include <tex/container.h>
-#include <tex/probe.h>
+#include <tex/file.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 namespace tex::cli {
 

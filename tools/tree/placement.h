@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "tree/state.h"
 #include "tree/tree_files.h"

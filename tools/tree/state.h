@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "tree/changes.h"
 #include "tree/sha256.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/steps.h>
+#include <tex/pipeline.h>
 
 #include "options/run.h"
 #include "tree/recipe.h"

@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// check.h: finds what is wrong with a texture of normals, from its file and its texels.
-//
-// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, if there is
-// one, a fix in the form of a command. rules() lists them all; the commands, the manual, the reports and the tests
-// read that one table.
-//
-// Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20
-// texels, spread over the map, and report their confidence.
+// check.h: maps are compared and checked.
 
 #pragma once
 
@@ -18,21 +11,81 @@
 #include <utility>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/convert_options.h>
-#include <tex/execution.h>
+#include <tex/file.h>
 #include <tex/format.h>
-#include <tex/height_field.h>
-#include <tex/mesh_selection.h>
-#include <tex/names.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/height.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
-#pragma GCC visibility push(default)
-namespace tex {
+namespace tex::inline v1 {
 
-struct Model;     // model.h
-struct ModelMap;  // model.h
+// -- compare -------------------------------------------------------------------------------------------------------
+//
+// The angles between two normal maps, in degrees.
+
+struct Comparison {
+    AngularError error;
+    Plane<float> degrees;  // the angle of each texel
+};
+
+// Compares two maps of unit vectors, texel by texel:
+//
+//     angle = 2 asin(|a - b| / 2)
+//
+// This is accurate near 0, unlike acos(dot(a, b)): in float, acos returns no angle between 0 and 0.02 degrees. Here
+// equal vectors are exactly 0 degrees apart. The error is below 0.0001 degrees up to 170 degrees, and below 0.03
+// degrees beyond.
+//
+// Errors: bad_option (the maps have no texels, or different extents), out_of_memory, cancelled.
+// The same bytes for every number of threads, processor and compiler.
+[[nodiscard]] TEX_API Result<Comparison> compare(const NormalMap& a, const NormalMap& b,
+                                                 const Execution& execution = {});
+
+// The same of the texels that the triangles of a mesh cover in the set of UVs `uv_set`, as mesh.h says which these
+// are. What is between the charts of a map is never seen, and two bakers fill it differently. The other texels have an
+// angle of 0 in Comparison::degrees and do not count in Comparison::error.
+//
+// Errors: also bad_data (check_part(part) fails), bad_option (there is no such set of UVs; no triangle covers a texel),
+// unsupported (UVs, as in mesh.h).
+[[nodiscard]] TEX_API Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const MeshPart& part,
+                                                 int uv_set = 0, const Execution& execution = {});
+
+// -- heat map ------------------------------------------------------------------------------------------------------
+//
+// Angles as a picture with a legend.
+
+// The rows of the legend under the picture, and its minimum width.
+inline constexpr int kHeatMapLegendRows = 36;
+inline constexpr int kHeatMapLeastWidth = 128;
+
+// A picture of angles in degrees, one pixel for each texel: planes R, G, B in [0, 1]. Black is 0, pale yellow is
+// `full_scale` degrees or more. (The colours are those of matplotlib's "inferno", Smith and van der Walt 2015, in ten
+// linear pieces. Their lightness grows evenly, so they are also readable in grey and with red-green colour blindness.)
+// A legend of kHeatMapLegendRows rows is below the map: the colours from 0 on the left to full_scale on the right, with
+// the values at both ends. If a map is narrower than kHeatMapLeastWidth, the rest of the picture is black.
+//
+// Precondition: `degrees` has no NaN.
+// Errors: bad_option (`degrees` has no texels; full_scale is not above 0 and at most 180), out_of_memory, cancelled.
+// The same bytes for every number of threads, processor and compiler.
+[[nodiscard]] TEX_API Result<Image> heat_map(const Plane<float>& degrees, double full_scale,
+                                             const Execution& execution = {});
+
+// The angles for a smaller picture. The longer side is divided into at most `side` cells; each cell holds its largest
+// angle, so that none is lost. Cells are square and span a whole number of texels, except those at the right and lower
+// border.
+// Errors: bad_option (`degrees` has no texels; side is below 1), out_of_memory.
+[[nodiscard]] TEX_API Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side);
+
+// -- check ---------------------------------------------------------------------------------------------------------
+//
+// Finds what is wrong with a texture of normals, from its file and its texels.
+//
+// Every rule has an id that never changes ("N201"), a name, a severity, a sentence, an explanation and, if there is
+// one, a fix in the form of a command. rules() lists them all; the commands, the manual, the reports and the tests
+// read that one table.
+//
+// Rules that count (values, file) look at every texel. Rules that judge (damage, convention, pair) look at up to 2^20
+// texels, spread over the map, and report their confidence.
 
 enum class Severity { note, warning, error };
 
@@ -71,10 +124,10 @@ struct Rule {
 };
 
 // All rules, by id.
-[[nodiscard]] std::span<const Rule> rules();
+[[nodiscard]] TEX_API std::span<const Rule> rules();
 
 // The rule with this id or name; null if there is none.
-[[nodiscard]] const Rule* find_rule(std::string_view id_or_name);
+[[nodiscard]] TEX_API const Rule* find_rule(std::string_view id_or_name);
 
 // What an engine reads, for rule N113.
 struct EngineNeeds {
@@ -111,7 +164,7 @@ inline constexpr Named<RequirementKey> kRequirementKeyNames[] = {
 
 // Adds one requirement, written "KEY=VALUE" ("mips=full"), or "KEY" if it has no value ("pow2").
 // Errors: bad_option (the reason lists what is allowed).
-[[nodiscard]] Result<void> add_requirement(Requirements& requirements, std::string_view text);
+[[nodiscard]] TEX_API Result<void> add_requirement(Requirements& requirements, std::string_view text);
 
 // The mesh that a map is on, for the rules of the family "mesh". Refers to the caller's objects.
 //
@@ -203,16 +256,16 @@ struct CheckReport {
 };
 
 // Checks that all rules in the options exist. Errors: bad_option.
-[[nodiscard]] Result<void> validate(const CheckOptions& options);
+[[nodiscard]] TEX_API Result<void> validate(const CheckOptions& options);
 
 // Checks a texture. `file` is its name in the report.
 //
 // Preconditions (asserted): the texture has at least one level, each with level_bytes() bytes; if there is a mesh,
 // check_part() succeeds.
-// Errors: bad_option (see validate()), out_of_memory, cancelled; with a mesh, also those of convert.h and tangents.h.
+// Errors: bad_option (see validate()), out_of_memory, cancelled; with a mesh, also those of mesh.h.
 // The same report for every number of threads, processor and compiler.
-[[nodiscard]] Result<CheckReport> check(const std::string& file, const Texture& texture,
-                                        const CheckOptions& options = {}, const Execution& execution = {});
+[[nodiscard]] TEX_API Result<CheckReport> check(const std::string& file, const Texture& texture,
+                                                const CheckOptions& options = {}, const Execution& execution = {});
 
 struct ModelCheckOptions {
     CheckOptions checks = {};                    // without `mesh` and `model`
@@ -227,23 +280,22 @@ struct ModelCheckOptions {
 //
 // Preconditions (asserted): the model is one of read_model(), and the map one of its maps.
 // Errors: bad_option (see validate())
-[[nodiscard]] Result<CheckReport> check_map(const Model& model, const ModelMap& map,
-                                            const ModelCheckOptions& options = {}, const ReadOptions& read = {},
-                                            const Execution& execution = {});
+[[nodiscard]] TEX_API Result<CheckReport> check_map(const Model& model, const ModelMap& map,
+                                                    const ModelCheckOptions& options = {}, const ReadOptions& read = {},
+                                                    const Execution& execution = {});
 
 // Reads a model and checks every normal map that its materials use, as check_map() does. Returns a report for each, in
 // the order of Model::maps; none if no material uses a map.
 //
 // Errors: those of read_model(); bad_option (also: there is no such material); out_of_memory, cancelled
-[[nodiscard]] Result<std::vector<CheckReport>> check_model(const std::string& path,
-                                                           const ModelCheckOptions& options = {},
-                                                           const ReadOptions& read = {},
-                                                           const Execution& execution = {});
+[[nodiscard]] TEX_API Result<std::vector<CheckReport>> check_model(const std::string& path,
+                                                                   const ModelCheckOptions& options = {},
+                                                                   const ReadOptions& read = {},
+                                                                   const Execution& execution = {});
 
 // Reads a file and checks it. If it cannot be read, the report has a finding (N101) and the Error. If memory runs out
 // or the check is cancelled, the report has only CheckReport::error. Errors: bad_option.
-[[nodiscard]] Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
-                                             const ReadOptions& read = {}, const Execution& execution = {});
+[[nodiscard]] TEX_API Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
+                                                     const ReadOptions& read = {}, const Execution& execution = {});
 
-}  // namespace tex
-#pragma GCC visibility pop
+}  // namespace tex::inline v1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// format.h: how texels are stored: formats, swizzles, and the encodings of normal maps made of both.
+// format.h: how a texture stores normals: formats, swizzles, encodings, textures.
 
 #pragma once
 
@@ -7,12 +7,15 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include <tex/image.h>
-#include <tex/names.h>
+#include <tex/types.h>
 
-#pragma GCC visibility push(default)
-namespace tex {
+namespace tex::inline v1 {
+
+// -- format --------------------------------------------------------------------------------------------------------
+//
+// How texels are stored: formats, swizzles, and the encodings of normal maps made of both.
 
 // The layout of a level's bytes. Channels are in the order R, G, B, A, little-endian, rows from the top without
 // padding. Block formats store rows of blocks from the top; blocks at the edges are stored whole. Blocks of BC1 to BC7
@@ -146,14 +149,14 @@ struct FormatInfo {
     friend bool operator==(const FormatInfo&, const FormatInfo&) = default;
 };
 
-[[nodiscard]] FormatInfo format_info(Format format);
+[[nodiscard]] TEX_API FormatInfo format_info(Format format);
 
 // The format without blocks for these samples; nullopt if there is none (no format has three signed channels).
-[[nodiscard]] std::optional<Format> format_of(SampleKind sample, int bits, int channels);
+[[nodiscard]] TEX_API std::optional<Format> format_of(SampleKind sample, int bits, int channels);
 
 // Bytes of a level: blocks across times blocks down times bytes of a block. The numbers of blocks are rounded up. Does
 // not overflow for extents up to kMaxExtent.
-[[nodiscard]] std::size_t level_bytes(Format format, Extent extent);
+[[nodiscard]] TEX_API std::size_t level_bytes(Format format, Extent extent);
 
 // What one stored channel holds.
 enum class Component {
@@ -182,7 +185,7 @@ inline constexpr Swizzle kSwizzleDxt5nm = {Component::one, Component::y, Compone
 inline constexpr Swizzle kSwizzleXxxy = {Component::x, Component::x, Component::x, Component::y};
 
 // The names of the components (kComponentNames) in the order R, G, B, A, as four characters: "1y1x".
-[[nodiscard]] std::string to_string(const Swizzle& swizzle);
+[[nodiscard]] TEX_API std::string to_string(const Swizzle& swizzle);
 
 // The encodings of normal maps that pack() makes: a format and a swizzle.
 //
@@ -248,7 +251,7 @@ struct EncodingInfo {
     Swizzle swizzle;
 };
 
-[[nodiscard]] EncodingInfo encoding_info(Encoding encoding);
+[[nodiscard]] TEX_API EncodingInfo encoding_info(Encoding encoding);
 
 // Which data beside the normals there are: NormalMap::blue, alpha and length.
 struct OtherPlanes {
@@ -261,15 +264,99 @@ struct OtherPlanes {
 
 // What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant, and data in the
 // length of vectors whose z is stored; so blue and length exclude each other.
-[[nodiscard]] OtherPlanes can_hold(Encoding encoding);
+[[nodiscard]] TEX_API OtherPlanes can_hold(Encoding encoding);
 
 // Whether pack() can choose blocks of this encoding that compress better (RdoOptions): x and y have a half each.
-[[nodiscard]] bool can_optimise(Encoding encoding);
+[[nodiscard]] TEX_API bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface
 // becomes vertical; 11.3 for 8 bits, 32 for the 11 bits of EAC, 181 for 16 bits. With z: z rounds to its least positive
 // code; 127 and 32767. Infinite for half and float.
-[[nodiscard]] float steepest_slope(Encoding encoding);
+[[nodiscard]] TEX_API float steepest_slope(Encoding encoding);
 
-}  // namespace tex
-#pragma GCC visibility pop
+// -- texture -------------------------------------------------------------------------------------------------------
+//
+// A packed texture: the bytes of its levels and their meaning.
+
+// One level: exactly level_bytes(format, extent) bytes in the layout of the format.
+struct Level {
+    Extent extent;
+    std::vector<std::byte> bytes;
+};
+
+// A texture between pack() and a file, or between a file and unpack(). levels[0] is the base level; the others have the
+// extents of level_extent().
+struct Texture {
+    Format format = Format::rgba8_unorm;
+    std::vector<Level> levels;
+
+    // What the channels hold, and the direction of y. If a file does not state them, the reader leaves `swizzle_known`
+    // or `y_known` false, and the value is the likeliest for the file's format. A format of one channel has it in R;
+    // if that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM), the swizzle is 000_.
+    Swizzle swizzle = kSwizzleXyz;
+    bool swizzle_known = false;
+    YAxis y_axis = YAxis::up;
+    bool y_known = false;
+
+    // Where R, G and B are equal and A varies, they hold x and A holds y: the convention of ASTC and KTX2 (Khronos'
+    // texture tools, --normal-mode). Elsewhere such texels are DXT5nm. guess_swizzle() asks for it.
+    bool x_in_grey = false;
+
+    // As Image::normal_encoding: "signed" if floats are the components of normals themselves, or empty.
+    std::string normal_encoding;
+
+    // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
+    bool srgb = false;
+
+    // Of heights: the strengths with which bake() makes the normals again from which they were integrated. 0: not
+    // known.
+    float bumpiness_x = 0.0f, bumpiness_y = 0.0f;
+
+    // The orientation that the file states, 1 to 8, as in TIFF and EXIF. The texels have been turned accordingly; the
+    // vectors in them are as they are stored.
+    int orientation = 1;
+
+    // Bytes after the last level, which were not read.
+    std::uint64_t trailing_bytes = 0;
+
+    // Other faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.
+    std::vector<std::string> remarks;
+
+    [[nodiscard]] Extent extent() const { return levels.empty() ? Extent{} : levels.front().extent; }
+};
+
+// -- swizzle -------------------------------------------------------------------------------------------------------
+//
+// The names of the layouts of normal maps, and how the layout of a texture is found.
+
+inline constexpr Named<Swizzle> kSwizzleNames[] = {
+    {kSwizzleXyz, "rgb", "x, y, z in R, G, B"},
+    {kSwizzleDxt5nm, "dxt5nm", "x in A, y in G (Unity; also xGxR, AG)"},
+    {{Component::other, Component::y, Component::z, Component::x}, "rxgb", "x in A, y in G, z in B (Doom 3)"},
+    {kSwizzleXy, "rg", "x in R, y in G"},
+    {kSwizzleYx, "gr", "y in R, x in G (3Dc, ATI2)"},
+    {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
+    {kSwizzleXxxy, "ra", "x in R, G and B, y in A (ASTC)"},
+};
+
+// The name in kSwizzleNames of the layout with x, y and z in the same channels as in `swizzle`; if there is none, the
+// letters of to_string(). Files, reports and messages name a layout by this word.
+[[nodiscard]] TEX_API std::string layout_name(const Swizzle& swizzle);
+
+// Finds the channels of `texture` that hold the normal. This is its own swizzle if the file states it or if the format
+// leaves no choice (fewer than four channels). Otherwise the texels of the base level decide, up to about 2^20 of them,
+// spread over the map:
+//
+//   ra       in ASTC and KTX2 (Texture::x_in_grey), R, G and B are equal (x in all three), and A is not 1 everywhere
+//   rgb      R and B are constant (within 8/255), and those of a flat map (x = 0, z = 1): A is something else
+//   dxt5nm   R and B are constant otherwise, and A varies or R, G, B cannot be a unit vector (if they are floats:
+//            neither unchanged nor as (n + 1) / 2); or A varies and R, G and B are equal (y in all three)
+//   rxgb     R is constant, A is not, and A, G, B are nearer to unit vectors than R, G, B
+//   rgb      all others
+//
+// A texture without x or y in its own swizzle (one channel) keeps it; unpack() then reports what is missing.
+//
+// Errors: as decode() of the base level. The same result for every number of threads.
+[[nodiscard]] TEX_API Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution = {});
+
+}  // namespace tex::inline v1

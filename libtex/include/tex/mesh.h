@@ -1,5 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh.h: triangle meshes in memory, with what tangent space needs: normals, texture coordinates (UV) and tangents.
+// mesh.h: triangles: reading, tangents, normals in tangent and object space, and normals from a mesh to another.
+
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
+
+namespace tex::inline v1 {
+
+// -- mesh ----------------------------------------------------------------------------------------------------------
+//
+// Triangle meshes in memory, with what tangent space needs: normals, texture coordinates (UV) and tangents.
 //
 // Conventions. A triangle's corners are counter-clockwise if seen from outside. Positions are in object space, in the
 // unit of the file. u points right. v points the way that the file stores it (`v_axis`): down in glTF, whose UV origin
@@ -12,20 +32,6 @@
 //     n = normalize(x T + y B + z N)
 //
 // This is glTF's convention, and that of MikkTSpace if v points up.
-
-#pragma once
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
-#include <tex/normal_map.h>
-#include <tex/result.h>
-
-#pragma GCC visibility push(default)
-namespace tex {
 
 struct Float2 {
     float x = 0.0f, y = 0.0f;
@@ -113,7 +119,7 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 // such parts only. (Tangents of files may be of any length, and their w may be any number.)
 //
 // Errors: bad_data, with the first violation ("index 8 of triangle 3 is out of range: there are 8 vertices").
-[[nodiscard]] Result<void> check_part(const MeshPart& part);
+[[nodiscard]] TEX_API Result<void> check_part(const MeshPart& part);
 
 // The part as it stands in the scene. Positions are multiplied by the matrix; normals by its inverse transpose, then
 // normalised; tangents by the matrix, then normalised. If the determinant is negative, the node mirrors the part: each
@@ -122,7 +128,674 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 //
 // Errors: bad_data (check_part(part) fails; the matrix is not invertible or not finite, or coordinates become
 // infinite), out_of_memory.
-[[nodiscard]] Result<MeshPart> in_scene(MeshPart part, const MeshNode& node);
+[[nodiscard]] TEX_API Result<MeshPart> in_scene(MeshPart part, const MeshNode& node);
 
-}  // namespace tex
-#pragma GCC visibility pop
+// -- mesh io -------------------------------------------------------------------------------------------------------
+//
+// Reads triangle meshes from glTF 2.0 (.gltf, .glb), Wavefront OBJ, FBX, PLY and other files.
+//
+// The first bytes of a file decide how it is read; for Assimp's types, its extension comes first.
+//
+// glTF   Buffers are inside the file (GLB), in data URIs (base64), or in files beside it. Such a file must be named by
+//        a relative path that stays in the folder of the .gltf file or below it: "mesh.bin", "parts/mesh.bin". URIs
+//        with a scheme, absolute paths and ".." are refused, because a mesh from a stranger must not choose what is
+//        read. Read: triangles, strips and fans (points and lines are skipped); indices of 8, 16 and 32 bits; POSITION,
+//        NORMAL, TANGENT and up to kMaxUvSets sets TEXCOORD_n, as floats or as integers (KHR_mesh_quantization); sparse
+//        accessors; matrices, translations, rotations and scales of nodes; instances of nodes
+//        (EXT_mesh_gpu_instancing); buffers compressed by meshoptimizer (EXT_meshopt_compression,
+//        KHR_meshopt_compression); triangles compressed by Draco (KHR_draco_mesh_compression), which a separate process
+//        decodes, as for other file types. Vertices that no triangle uses are dropped. UVs stay as stored; materials
+//        say how textures move them (KHR_texture_transform). Ignored: skins, morph targets (the base shape is read),
+//        animations, cameras. Other extensions: refused if the file requires them and they are not known to leave
+//        triangles alone; else Mesh::remarks says if one was ignored where it might change UVs, normals or tangents.
+//        Colours of vertices are COLOR_0 without its alpha, as floats or normalised integers.
+// OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
+//        are one part; those of them without UVs are another. A part has normals if all of its corners have them.
+//        Colours are the three numbers after a position ("v x y z r g b"), which many programs write; a part has them
+//        if all of its corners do. All else is ignored.
+// other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it
+//        runs in a separate process, tex-mesh-reader, under the limits of memory and time that ReadOptions states,
+//        and can open no other file. Polygons become triangles as Assimp divides them. Tangents count if the file has
+//        bitangents, too. Coordinates are in the units and axes of Assimp.
+
+inline constexpr int kMaxUvSets = 8;
+
+struct MeshReadOptions {
+    // The reader program of other file types: tex-mesh-reader, beside the program that `reader` names if it is given.
+    ReadOptions reader;
+    // The largest size in bytes of the file and of each file beside it.
+    std::int64_t max_bytes = std::int64_t{4} << 30;
+    // Read colours of vertices, which only transfer() uses.
+    bool colors = false;
+};
+
+// Reads a mesh. `path` "-" reads standard input; glTF from there can have no buffers in other files. Every part of the
+// result passes check_part(); there is at least one part.
+//
+// Errors: io           the file or one beside it cannot be opened or read; the reader program cannot be started
+//         bad_data     empty, truncated, damaged; indices out of range; infinite or NaN coordinates; nodes that contain
+//                      themselves; accessors that leave their buffers; no triangles
+//         unsupported  valid, but of a type not handled (glTF 1.0, compressed geometry, a required extension that is
+//                      not listed above); more than max_bytes
+//         out_of_memory
+// No file content makes this function crash or hang beyond reader_timeout. The memory that it uses stays in proportion
+// to the bytes that the files hold, not to what they claim.
+[[nodiscard]] TEX_API Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+
+// The files that read_mesh() may read for this path: `path` itself, then the existing files that hold buffers of a glTF
+// file, each once. A mesh is the same as long as these files are. Only `path` if it is "-" or not a regular file, which
+// can be read only once.
+//
+// Errors: those of read_mesh(), as far as the glTF file without its buffers causes them.
+[[nodiscard]] TEX_API Result<std::vector<std::string>> mesh_files(const std::string& path,
+                                                                  const MeshReadOptions& options = {});
+
+// -- mesh selection ------------------------------------------------------------------------------------------------
+//
+// Chooses the parts of a mesh that share a normal map, and their tangents.
+
+// Where tangents come from: see make_tangents().
+enum class TangentSource { file, mikktspace, meshopt };
+
+inline constexpr Named<TangentSource> kTangentSourceNames[] = {
+    {TangentSource::file, "file", "those that the mesh has stored"},
+    {TangentSource::mikktspace, "mikktspace", "MikkTSpace: most bakers, Blender, Unity, Unreal"},
+    {TangentSource::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot"},
+};
+
+// Which parts of a mesh use a map. What is not given does not restrict the choice.
+struct MeshSelection {
+    std::string material;                   // a name, or an index into Mesh::materials
+    std::optional<int> primitive;           // MeshPart::primitive
+    std::string node;                       // the parts as this node places them in the scene; else in their own space
+    bool in_scene = false;                  // without `node`: each part as the first node that shows it places it
+    std::optional<int> uv_set;              // none: the one that the material's normal map uses, or 0
+    std::optional<TangentSource> tangents;  // none: those of the file if all of these parts have them and uv_set is not
+                                            // given; else mikktspace
+    // How the map places the UVs. None: as the material says of its normal map, if `uv_set` is not another set.
+    std::optional<UvTransform> uv_transform = {};
+};
+
+// Triangles of a SelectedPart that come from one part of the file.
+struct SelectedPiece {
+    std::string name;          // of the node that places the part, or of the part if that has none
+    std::string material;      // may be empty
+    std::size_t triangle = 0;  // the first one; the others follow up to that of the next piece
+};
+
+// The chosen parts, joined. The part has one set of UVs, in which the transform is applied, normals, and no tangents of
+// vertices.
+struct SelectedPart {
+    MeshPart part;
+    std::vector<Float4> tangents;  // one for each element of part.indices
+    TangentSource source = TangentSource::mikktspace;
+    bool has_normal_map = false;        // their material
+    bool has_tangents = false;          // every part has stored tangents, whether or not they were chosen
+    bool has_transform = false;         // UVs were moved: they are not those of the file
+    std::vector<SelectedPiece> pieces;  // in the order of their triangles
+    // Those of the mesh, and what the choice left out, as sentences that follow the name of the file.
+    std::vector<std::string> remarks = {};
+    // Positions, normals and triangles that in_tile() left out, for TransferInputs::around; otherwise empty.
+    MeshPart rest = {};
+};
+
+// Joins the parts that `selection` names. Tangents are made for each part, from the moved UVs, before a node transforms
+// it. Stored tangents stay as they are: a transform moves the map, not the tangents. If only some of the parts have the
+// set of UVs, the others are left out, as they show no map.
+//
+// Preconditions (asserted): every part passes check_part().
+// Errors: bad_option   there is no such material, node or part; several nodes have this name; the parts have different
+//                      materials; no part has the set of UVs; a part lacks normals or the tangents
+//         unsupported  the parts have more than kMaxTriangles triangles; and as make_tangents()
+//         bad_data     as in_scene()
+//         out_of_memory, cancelled
+[[nodiscard]] TEX_API Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
+                                                       const Execution& execution = {});
+
+// All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
+// no nodes at all. Parts that no node shows are left out. Each is called as its node is, if that has a name.
+//
+// Preconditions (asserted): every part passes check_part().
+// Errors: bad_data     as in_scene(), or no node shows a part
+//         out_of_memory
+[[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh);
+
+// Which names belong together: numbers for TransferInputs.
+struct MatchedNames {
+    std::vector<int> low, high;                    // the number of each name; equal numbers belong together
+    std::vector<std::string> lone_low, lone_high;  // those without partner, each once
+};
+
+// Names of parts of a low and a high mesh belong together if their stems are equal, in upper or lower case. The stem of
+// "Rock_low" is "Rock"; what follows the mark does not count, so that "Rock_high", "rock_high_bolts" and
+// "Rock_high.001" belong to it. A mark is low, lowpoly, lo or lp, or high, highpoly, hi or hp, between separators (_ -
+// . or a space) or at the end; the last one counts. A name without a mark is its own stem. (Bakers agree on _low and
+// _high.)
+[[nodiscard]] TEX_API MatchedNames match_names(const std::vector<std::string>& low,
+                                               const std::vector<std::string>& high);
+
+// The triangles whose UVs have their centre in a UDIM tile, with their tangents, and the others as `rest`. Tile 1001 +
+// u + 10 v is the square from (u, v) to (u + 1, v + 1), where v points up and u is 0 to 9 (Foundry, Mari).
+//
+// Errors: bad_data (check_part(selected.part) fails), bad_option (tile is below 1001; no triangle is there),
+//         out_of_memory
+[[nodiscard]] TEX_API Result<SelectedPart> in_tile(const SelectedPart& selected, int tile);
+
+// The UDIM tiles of a part, and what does not fit into them.
+struct UvTiles {
+    std::vector<int> tiles;    // those with triangles, as in_tile() takes them, ascending
+    std::size_t outside = 0;   // triangles in no tile, because u or v is negative or u is 10 or more
+    std::size_t crossing = 0;  // triangles in a tile that reach more than 1e-4 out of it
+};
+
+// Errors: bad_data (check_part(selected.part) fails), out_of_memory
+[[nodiscard]] TEX_API Result<UvTiles> tiles_of(const SelectedPart& selected);
+
+// -- tangents ------------------------------------------------------------------------------------------------------
+//
+// Makes the tangents of a mesh, by the method that a baker or an engine uses.
+//
+// A normal map and the tangents that decode it belong together. If the engine makes tangents by another method than the
+// baker, the shading is wrong by the angle between the two, which shows most along the seams of UV charts.
+
+// How tangents are made.
+//
+//   mikktspace  corners weld if position, normal and UV are equal. Triangles around a corner form groups, which end at
+//               edges that are not shared and where the UVs change from mirrored to not mirrored. A group's tangent is
+//               the sum of the directions in which u grows on its triangles, each projected into the plane of the
+//               normal and weighted by the triangle's angle. Degenerate triangles take the tangents of their
+//               neighbours. (Morten S. Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008, and mikktspace.h.)
+//               Results are those of the reference implementation, including the neighbours that it misses: it leaves
+//               the edges of the last vertex unsorted.
+//   meshopt     meshoptimizer 1.3 (meshopt_generateTangents without flags): similar groups, but larger triangles weigh
+//               more. The weight is the product of the angle and the lengths of both edges, in the plane of the normal.
+enum class TangentMethod { mikktspace, meshopt };
+
+inline constexpr Named<TangentMethod> kTangentMethodNames[] = {
+    {TangentMethod::mikktspace, "mikktspace", "MikkTSpace: most bakers, Blender, Unity, Unreal"},
+    {TangentMethod::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot"},
+};
+
+// The most triangles that may meet at one vertex if their tangents point in opposite directions (mikktspace) or at all
+// (meshopt). The methods compare all pairs of these.
+inline constexpr int kMaxFan = 4096;
+
+// The tangents of all corners: one for each element of part.indices, from set `uv_set` of its UVs. Tangents have unit
+// length; corners for which the method finds no direction have (1, 0, 0). w is as described above.
+// Vertices whose corners have different tangents must be split before the tangents become an attribute of vertices.
+//
+// Errors: bad_data     check_part(part) fails
+//         bad_option   the part has no normals or no such set of UVs
+//         unsupported  more than kMaxFan triangles meet at one vertex, as explained there
+//         out_of_memory, cancelled
+// The same bytes for every number of threads, processor and compiler.
+// Memory: about 50 bytes for each corner, including the result.
+[[nodiscard]] TEX_API Result<std::vector<Float4>> make_tangents(const MeshPart& part,
+                                                                TangentMethod method = TangentMethod::mikktspace,
+                                                                int uv_set = 0, const Execution& execution = {});
+
+// The tangents that the part's vertices have, one for each corner. Errors: bad_option (there are none), out_of_memory.
+[[nodiscard]] TEX_API Result<std::vector<Float4>> stored_tangents(const MeshPart& part);
+
+// -- convert -------------------------------------------------------------------------------------------------------
+//
+// Converts normal maps between tangent space and object space, with the tangents of a mesh.
+//
+// An engine makes three vectors at each texel from a triangle's corners (`Decoder`), and decodes a texel t = (x, y, z)
+// of the map, y up, with them:
+//
+//     n = normalize(x T' + y B' + z N')
+//
+// where z is rebuilt from x and y if the engine does so (rebuilds_z()). For it, x and y must be those of the texture:
+// UnpackOptions::keep_length.
+// Engines differ in these vectors, so a map decodes to other normals than it was made for, unless both are the same.
+// to_tangent_space() is the exact inverse of to_object_space() for each decoder, of unit vectors with z >= 0:
+//
+//     r0 = cross(B', N'), r1 = cross(N', T'), r2 = cross(T', B'), s = the sign of dot(T', r0)
+//     t = normalize(s (dot(n, r0), dot(n, r1), dot(n, r2)))
+//
+// A map in object space holds x, y and z of the mesh's own axes, which are those of the file: right-handed, with y up
+// in glTF. z may be negative.
+
+// How an engine makes the vectors T', B' and N' that decode a texel (see above) from the normals N, the tangents T
+// and the signs w of a triangle's corners. N and T are normalised at the corners first. Interpolation is linear in UV
+// space.
+//
+//   per vertex     T' and N' are interpolated, B' is the interpolated w cross(N, T); nothing is normalised
+//   per fragment   T' and N' are interpolated, B' = w cross(N', T'); nothing is normalised
+//   normalized     as per vertex, but B is normalised at the corners, and T', B' and N' after interpolation
+//
+// Decoders of the same kind give the same vectors. Where engines differ in y, or in how exactly they store tangents,
+// the decoders here do not: Unreal reads maps with y down and stores tangents in 8 bits by default. rebuilds_z() says
+// which ones ignore z.
+enum class DecoderKind { per_vertex, per_fragment, normalized };
+
+inline constexpr Named<DecoderKind> kDecoderKindNames[] = {
+    {DecoderKind::per_vertex, "per-vertex", "B is made at the vertices; nothing is normalised"},
+    {DecoderKind::per_fragment, "per-fragment", "B is made at the fragment; nothing is normalised"},
+    {DecoderKind::normalized, "normalized", "B is made at the vertices; T, B and N are normalised"},
+};
+
+enum class Decoder {
+    unity_builtin,
+    unity_urp,
+    unity_hdrp,
+    unreal,
+    godot,
+    gltf,
+    blender,
+    three,
+    substance_vertex,
+    substance_fragment,
+};
+
+inline constexpr Named<Decoder> kDecoderNames[] = {
+    {Decoder::unity_builtin, "unity-builtin", "Unity's built-in pipeline, xNormal: per vertex"},
+    {Decoder::unity_urp, "unity-urp", "Unity URP: per fragment"},
+    {Decoder::unity_hdrp, "unity-hdrp", "Unity HDRP: per fragment"},
+    {Decoder::unreal, "unreal", "Unreal: per fragment"},
+    {Decoder::godot, "godot", "Godot: per vertex"},
+    {Decoder::gltf, "gltf", "glTF's formula: per fragment"},
+    {Decoder::blender, "blender", "Blender (Cycles): per fragment"},
+    {Decoder::three, "three", "three.js: normalised per vertex and per fragment"},
+    {Decoder::substance_vertex, "substance-vertex", "Substance, binormal per vertex"},
+    {Decoder::substance_fragment, "substance-fragment", "Substance, binormal per fragment"},
+};
+
+[[nodiscard]] constexpr DecoderKind decoder_kind(Decoder decoder) {
+    switch (decoder) {
+        case Decoder::unity_builtin:
+        case Decoder::godot:
+        case Decoder::substance_vertex: return DecoderKind::per_vertex;
+        case Decoder::three: return DecoderKind::normalized;
+        case Decoder::unity_urp:
+        case Decoder::unity_hdrp:
+        case Decoder::unreal:
+        case Decoder::gltf:
+        case Decoder::blender:
+        case Decoder::substance_fragment: break;
+    }
+    return DecoderKind::per_fragment;
+}
+
+// Whether the engine ignores the z of every texture, and takes sqrt(max(0, 1 - x^2 - y^2)) for it.
+[[nodiscard]] constexpr bool rebuilds_z(Decoder decoder) { return decoder == Decoder::godot; }
+
+// The tangent space of a map: a mesh with a tangent for each corner, and a decoder. Refers to the caller's objects.
+struct TangentSpace {
+    const MeshPart& part;
+    const std::vector<Float4>& tangents;  // one for each element of part.indices
+    int uv_set = 0;
+    Decoder decoder = Decoder::gltf;
+    std::string file = {};  // that errors name; may be empty
+};
+
+// The padding that fills the whole map.
+inline constexpr int kPadAll = 1 << 30;
+
+// The most subsamples of a texel in each direction.
+inline constexpr int kMaxSubsamples = 8;
+
+struct ConvertOptions {
+    int padding = kPadAll;  // the width in texels of the border around each chart, 0 or more
+    int subsamples = 1;     // of a texel, in each direction, 1 to kMaxSubsamples
+};
+
+// Whether every option is in its range. The verbs call it first. Errors: bad_option, which names the option.
+[[nodiscard]] TEX_API Result<void> validate(const ConvertOptions& options);
+
+// How a texel of a converted map got its normal.
+enum class Coverage : std::uint8_t {
+    none,      // it is background: (0, 0, 1)
+    padding,   // it is a copy of the nearest texel that has a normal
+    gutter,    // it continues the nearest triangle's plane (object space only)
+    triangle,  // a triangle covers it
+};
+
+struct ConvertedMap {
+    NormalMap map;
+    Plane<Coverage> coverage;
+    std::int64_t covered = 0;    // texels that triangles cover
+    std::int64_t overlaps = 0;   // those (subsamples, if there are any) that several triangles cover: the first decides
+    std::int64_t backward = 0;   // those whose z is negative in tangent space, so that most encodings cannot hold them
+    std::int64_t singular = 0;   // those where T', B' and N' lie in one plane: they are (0, 0, 1) in tangent space
+    std::int64_t unmatched = 0;  // refit() only: those that no triangle of the first space covers
+};
+
+// Converts a map.
+//
+// A texel belongs to the triangle whose UVs contain its centre; of two triangles that share an edge, exactly one does.
+// The map repeats, so UVs may be outside of 0 to 1. Corners are rounded to 1/256 texel.
+//
+// With n subsamples, a texel is divided into n x n squares. Each belongs to a triangle as a texel does, and converts
+// the texel's normal with its own T', B' and N'. The texel becomes the normalised sum of those that triangles cover,
+// however few they are. Corners are then rounded to 1/256 square.
+//
+// The border of `padding` texels around the charts is filled afterwards. In object space, its first two texels (the
+// gutter) are decoded from the map, with the nearest triangle continued beyond its edge; no weight of a corner goes
+// beyond -1. All others are copies of the nearest texel. A map in object space often has no valid texels outside of its
+// charts, so to_tangent_space() reads none of them: its border consists of copies alone.
+//
+// Data beside the normals (NormalMap::blue, alpha, length) stay where they are, as they are.
+//
+// Errors: bad_data     check_part(space.part) fails
+//         bad_option   the map has no texels; as validate(options); no normals, no such set of UVs, not as many
+//         tangents as corners; no triangle covers a texel unsupported  UVs beyond a million; a triangle covers more
+//         than 16 repeats of the map, or more than 2^22
+//                      texels, in one direction
+//         out_of_memory, cancelled
+// The same bytes for every number of threads, processor and compiler.
+// Memory: 12 bytes for each texel of the result, 4 for each of its other data, and 1 for its coverage; 4 more while the
+// border is filled; and about 80 bytes for each triangle.
+[[nodiscard]] TEX_API Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space,
+                                                           const ConvertOptions& options = {},
+                                                           const Execution& execution = {});
+[[nodiscard]] TEX_API Result<ConvertedMap> to_tangent_space(const NormalMap& map, const TangentSpace& space,
+                                                            const ConvertOptions& options = {},
+                                                            const Execution& execution = {});
+
+// Makes a map in the tangent space `from` fit the tangent space `to`: another decoder, other tangents, or another
+// version of the mesh with the same UVs. to_object_space() with `from`, padded, then to_tangent_space() with `to`.
+// The counts are those of the second step. If charts share texels, the first triangle of each mesh decides.
+//
+// Errors and memory: as above, with two maps in memory besides `map`.
+[[nodiscard]] TEX_API Result<ConvertedMap> refit(const NormalMap& map, const TangentSpace& from, const TangentSpace& to,
+                                                 const ConvertOptions& options = {}, const Execution& execution = {});
+
+// -- transfer ------------------------------------------------------------------------------------------------------
+//
+// Makes a normal map of a low mesh from a high one: the rays of what artists call baking.
+//
+// Each sample of the low mesh, a texel or one of n x n places in it, has a point P on the triangle whose UVs cover it
+// (Coverage), and a direction D (RayMode) of unit length, out of the surface:
+//
+//     smooth    the interpolated normals S of the low mesh's positions: the sum of the normals of all triangles that
+//               meet at a position, each weighted by its angle there. They are the same on both sides of hard edges and
+//               seams, so rays leave no gap, but bend on large flat faces.
+//     straight  k = smoothstep(0, straight_width, the distance from P to the nearest hard edge),
+//               D = normalize(mix(S, F, k)), where F is made as S, but from triangles on the same side of all hard
+//               edges alone: on a flat face, its own normal. D is continuous, so there are no gaps, and does not bend
+//               farther from hard edges than the width. An edge is hard if its faces differ by more than
+//               straight_angle, or if it has not two triangles. The distance is a straight line.
+//     vertex    the low mesh's own normals, interpolated
+//
+// The ray starts at O = P + front D and runs along -D for front + back. `outermost` takes the first triangle of the
+// high mesh that it meets; `nearest` takes the one that is nearest to P. Triangles that are seen from behind, from
+// which D does not point outwards, are passed over unless `backfaces` is set. The test of a ray against a triangle is
+// watertight (Woop, Benthin, Wald, Watertight Ray/Triangle Intersection, JCGT 2 (1), 2013), in double: no ray passes
+// between two triangles with a common edge. Among triangles at the same distance, the first one wins.
+//
+// At the hit, n is the normalised interpolated normal of the high mesh, or the triangle's own where the high mesh has
+// none, or what HighDetail::normals say in the tangent space of the high mesh. The texel's vector is the normalised sum
+// of its samples that hit, converted to tangent space at the texel's centre by the decoder, or at the
+// covered sample nearest to it. A texel is *missed* if triangles of the low mesh cover it, but no ray hits.
+//
+// Second rays start at each hit of a sample, N = rays_per_hit of them, in directions about n (about the triangle's own
+// normal G if n points into it), each as often as its cosine with n says: the k-th point of Sobol's sequence, which the
+// texel's place scrambles (Burley 2020). Directions below the triangle's plane are reflected by it, so that no
+// triangle hides itself. They start off the surface by 2^-32 of the largest coordinate, less than a float can tell.
+// Every triangle blocks them, from both sides, up to occlusion_distance. Without backfaces all is on the side of G;
+// with them, on the side from which the ray came.
+//
+//     occlusion  the part of second rays that nothing blocks: 1 is open, 0 closed. Of a plane below an infinite wall
+//                at a right angle, 1/2; its standard deviation is at most sqrt(v (1 - v) / N).
+//     bent       the normalised sum of the directions that nothing blocks, in tangent space; n if all are blocked
+//     thickness  the mean distance to the first triangle along N such directions about -n, at most occlusion_distance.
+//                Those that meet none count as that distance, or not at all if there is no limit. It is 4/3 r in a
+//                sphere of radius r.
+//
+// Automatic `front` and `back` follow from both meshes. They are the largest distances of the high mesh's vertices from
+// the low mesh, and of the low mesh's corners and middles of triangles from the high one along their D, outwards and
+// inwards, plus a quarter, plus a thousandth of the low mesh's diagonal. Distances of more than a tenth of the diagonal
+// do not count, because what is so far away belongs to something else.
+
+// The directions D of the rays: see above.
+enum class RayMode { smooth, straight, vertex };
+
+inline constexpr Named<RayMode> kRayModeNames[] = {
+    {RayMode::smooth, "smooth", "averaged normals: no gaps at hard edges, skewed details on flat faces"},
+    {RayMode::straight, "straight", "averaged normals near hard edges alone, the faces' own elsewhere"},
+    {RayMode::vertex, "vertex", "the normals of the low mesh: gaps where they are split"},
+};
+
+// Which point counts if a ray meets several.
+enum class HitChoice { outermost, nearest };
+
+inline constexpr Named<HitChoice> kHitChoiceNames[] = {
+    {HitChoice::outermost, "outermost", "the first one from outside: keeps floating details"},
+    {HitChoice::nearest, "nearest", "the one nearest to the low mesh, on either side"},
+};
+
+// A length: in the unit of the meshes, in percent of the diagonal of the low mesh's box, or found from the meshes.
+struct Reach {
+    enum class Unit { automatic, absolute, percent };
+    Unit unit = Unit::automatic;
+    double value = 0.0;  // finite, 0 or more; means nothing if automatic
+};
+
+inline constexpr int kMaxRaysPerHit = 4096;
+
+struct TransferOptions {
+    RayMode rays = RayMode::smooth;
+    Reach front, back;  // how far rays reach outside and inside of the low mesh
+    HitChoice hit = HitChoice::outermost;
+    bool backfaces = false;  // faces seen from behind count, too
+
+    // With RayMode::straight: an edge is hard if its faces differ by more than this angle in degrees, 0 to 180; within
+    // `straight_width` of hard edges, D turns to the averaged normals. Automatic: 5 percent.
+    double straight_angle = 30.0;
+    Reach straight_width;
+
+    int padding = kPadAll;  // the width in texels of the border around each chart, 0 or more
+    int subsamples = 1;     // of a texel, in each direction, 1 to kMaxSubsamples
+
+    // The maps to make besides the one in tangent space: from the rays, and from second rays that start where they hit.
+    bool object = false, heights = false, positions = false;
+    bool occlusion = false, bent = false, thickness = false;
+    bool vertex_colors = false;
+
+    int rays_per_hit = 64;     // second rays: 1 to kMaxRaysPerHit; as many again for thickness
+    Reach occlusion_distance;  // how far second rays reach; automatic: without limit
+
+    [[nodiscard]] bool has_second_rays() const { return occlusion || bent || thickness; }
+};
+
+// Whether every option is in its range. transfer() calls it first. Errors: bad_option, which names the option.
+[[nodiscard]] TEX_API Result<void> validate(const TransferOptions& options);
+
+// How a texel of a transferred map got its normal.
+enum class TexelOrigin : std::uint8_t {
+    none,     // it is background: (0, 0, 1)
+    padding,  // it is outside of all triangles, and a copy of the nearest texel with a hit
+    missed,   // it is the same inside of a triangle: no ray hit
+    hit,      // rays hit the high mesh
+};
+
+struct TransferredMaps {
+    NormalMap map;  // in tangent space
+    // If the options ask for them, otherwise empty. Texels are filled as those of `map`; background is (0, 0, 1) in
+    // object space and 0 elsewhere.
+    NormalMap object;      // in the space of the meshes: see "convert" above
+    Plane<float> heights;  // the mean distance of the hits from P along D, in the unit of the meshes: outside is > 0
+    Plane<float> position[3];  // x, y, z of the mean hit
+    Plane<float> occlusion;    // 0 to 1; background is 1
+    NormalMap bent;
+    Plane<float> thickness;  // in the unit of the meshes
+    // If the inputs have them. The id is that of most hits of a texel, the smallest one of several; colours are means.
+    Plane<std::int32_t> ids;  // kNoId: background
+    Image color;              // R, G, B; background is 0
+    // If the options ask for them: the mean of MeshPart::colors at the hits, interpolated. R, G, B; parts without
+    // colours are white, and background is 0.
+    Image vertex_color;
+    Plane<TexelOrigin> origin;
+
+    // Counts of texels; those of samples say so.
+    std::int64_t covered = 0;   // hit or missed
+    std::int64_t missed = 0;    // no ray of theirs hit
+    std::int64_t overlaps = 0;  // samples that several triangles of the low mesh cover: the first decides
+    std::int64_t backward = 0;  // z is negative in tangent space, so that most encodings cannot hold them
+    std::int64_t singular = 0;  // the low mesh has no tangent space there: they are (0, 0, 1)
+    std::int64_t behind = 0;    // samples whose rays hit, or would hit, only triangles seen from behind
+
+    std::int64_t rays = 0;  // all that were cast from samples and from hits
+
+    // As used, in the unit of the meshes; with a cage, front is the largest distance from it.
+    double front = 0.0, back = 0.0;
+    double diagonal = 0.0;                   // of the low mesh's box
+    float lowest = 0.0f, highest = 0.0f;     // heights of hits, also if no map of heights is made
+    float thinnest = 0.0f, thickest = 0.0f;  // of hits
+
+    // What would have hit the missed texels, by a line through the first sample of each: the reach in front and behind
+    // that 95 percent of those need whose line meets a triangle from outside, and the number of the others.
+    double needed_front = 0.0, needed_back = 0.0;
+    std::int64_t hopeless = 0;
+};
+
+inline constexpr std::int32_t kNoId = -1;
+
+// Pictures on a part of the high mesh, at its UVs, which repeat. They are filtered bilinearly, without mip levels: of
+// pictures that are finer than the map, subsamples make the mean. What pointers show must stay until transfer()
+// returns.
+struct HighDetail {
+    // The part's own normal map in tangent space, y up, the engine that decodes it, and the part's tangents, one for
+    // each corner. Null: none. The part must have normals.
+    const NormalMap* normals = nullptr;
+    const std::vector<Float4>* tangents = nullptr;
+    Decoder decoder = Decoder::gltf;
+    // Its colours: one plane is grey, of more the first three count. Null: the part is white.
+    const Image* color = nullptr;
+    int uv_set = 0;
+};
+
+// What transfer() may be given beside the two meshes. What pointers show must stay as it is until it returns.
+struct TransferInputs {
+    // The rest of the low mesh if `low` is a part of it, such as a UDIM tile. Its triangles get no texels, but count
+    // for everything else: the directions of rays, which leave no gap between both parts, hard edges, the diagonal and,
+    // if there are no groups, automatic reach. Only positions and normals are read.
+    const MeshPart* around = nullptr;
+    // The low mesh, pushed outwards: the same triangles, of which only the positions count. Rays start at O = C, the
+    // same place of the cage's triangle, with D = normalize(C - P) and |C - P| in place of `front`, and a millionth of
+    // the low mesh's diagonal more, so that they meet what lies on the cage. Where C is P, D is that of `rays`.
+    const MeshPart* cage = nullptr;
+    // With RayMode::straight, k of each place of the map, from 0 (smooth) to 1 (straight), in place of the distance to
+    // hard edges. A picture of any size, which is filtered bilinearly and lies over the map.
+    const Plane<float>* skew = nullptr;
+    // The same of a factor for `front`, 0 or more.
+    const Plane<float>* offset = nullptr;
+    // Rays from triangles of the low mesh meet the parts of the high one that have the same number: one for each
+    // triangle, and one for each part. Rays of a number that no part has are missed. Second rays meet all parts. Both
+    // are empty: all rays meet all parts.
+    std::vector<int> low_groups, high_groups;
+    // What TransferredMaps::ids shows of each part of the high mesh, 0 or more. Empty: there is no such map.
+    std::vector<std::int32_t> high_ids;
+    // What lies on each part of the high mesh. Empty: nothing.
+    std::vector<HighDetail> high_details;
+    // Counts rays while they are cast; may be null.
+    std::atomic<std::int64_t>* rays = nullptr;
+};
+
+// Makes the maps of the low mesh. `high`: the triangles that rays hit, in the same space as `low.part`. Parts need
+// neither normals nor UVs.
+//
+// Errors: bad_data     a part does not pass check_part()
+//         bad_option   the extent is empty or too large; as validate(options); the low mesh has no normals, no such set
+//                      of UVs, not as many tangents as corners; its triangles cover no texel of the map; `high` is
+//                      empty; no ray hits anything (the reason says how far apart the meshes are); the cage has other
+//                      triangles; a skew or offset is empty, negative or not finite; groups, ids or details do not fit
+//                      the meshes
+//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`
+//         out_of_memory, cancelled
+// The same bytes for every number of threads, processor and compiler.
+// Memory: 13 bytes for each texel, 12 more for object space, positions, bent normals and colours, 4 for heights,
+// occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice
+// that for groups with second rays) and 200 for each of the low one.
+[[nodiscard]] TEX_API Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,
+                                                       const std::vector<MeshPart>& high,
+                                                       const TransferOptions& options = {},
+                                                       const Execution& execution = {});
+[[nodiscard]] TEX_API Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,
+                                                       const std::vector<MeshPart>& high, const TransferInputs& inputs,
+                                                       const TransferOptions& options = {},
+                                                       const Execution& execution = {});
+
+// -- model ---------------------------------------------------------------------------------------------------------
+//
+// glTF models with their normal maps: meshes, materials, images.
+//
+// A glTF material names textures by the part that they play, a slot: normalTexture, baseColorTexture ... A texture
+// names an image, which is a file beside the model, or bytes in it.
+
+// The slots that hold normals.
+enum class NormalSlot { normal, clearcoat_normal };
+
+inline constexpr Named<NormalSlot> kNormalSlotNames[] = {
+    {NormalSlot::normal, "normal", "normalTexture"},
+    {NormalSlot::clearcoat_normal, "clearcoat-normal", "clearcoatNormalTexture of KHR_materials_clearcoat"},
+};
+
+// A slot of a material that uses an image.
+struct ImageUse {
+    int material = 0;       // an index into Mesh::materials
+    std::string slot;       // "baseColorTexture"
+    bool is_color = false;  // glTF reads the slot as sRGB colours
+};
+
+// An image of a model.
+struct ModelImage {
+    std::string name;       // as the model calls it, else the name of its file, else "image 3"
+    std::string file;       // the path of its file, which need not exist; empty: its bytes are in the model
+    std::string mime_type;  // as the model states it; may be empty
+    std::vector<std::byte> bytes;
+    std::vector<ImageUse> uses;
+    std::optional<Error> error;  // why it cannot be read, if the model says enough to know that
+};
+
+// A normal map that a material uses.
+struct ModelMap {
+    int material = 0;  // an index into Mesh::materials
+    NormalSlot slot = NormalSlot::normal;
+    int image = -1;  // an index into Model::images; -1: none that libtex knows
+    int uv_set = 0;
+    UvTransform uv_transform = {};
+    double scale = 1.0;            // x and y are multiplied by it (normalTexture.scale)
+    bool is_double_sided = false;  // the material
+};
+
+struct Model {
+    std::string file;  // its path
+    Mesh mesh;
+    std::vector<ModelImage> images;
+    std::vector<ModelMap> maps;  // by material, then slot
+};
+
+// Whether a file begins as a glTF model does, as text or as GLB. False if it cannot be read; "-" is not looked at.
+[[nodiscard]] TEX_API bool is_model(const std::string& path);
+
+// Reads a model: its meshes as read_mesh(), and the bytes of those images that are inside it and that a normal slot
+// uses. Of the sources of a texture, the first that is there counts: KHR_texture_basisu, MSFT_texture_dds,
+// EXT_texture_webp, else the texture's own. An image in a file must be in the folder of the model or below it, as
+// buffers must.
+//
+// Errors: those of read_mesh(); unsupported (the file is not glTF; it is "-").
+[[nodiscard]] TEX_API Result<Model> read_model(const std::string& path, const MeshReadOptions& options = {});
+
+// The same without geometry: of the mesh, the materials alone. Errors: those of read_model() that do not come from
+// geometry.
+[[nodiscard]] TEX_API Result<Model> read_model_maps(const std::string& path, const MeshReadOptions& options = {});
+
+// The material and the image of a map, as messages name them: "Leather: leather_n.png"; "2 (clearcoat): image 3".
+[[nodiscard]] TEX_API std::string map_name(const Model& model, const ModelMap& map);
+
+// Reads the image of a map. Its content decides how, whatever mime_type says. Errors: those of read_texture(); bad_data
+// (the map has no image). They name the image.
+[[nodiscard]] TEX_API Result<Texture> read_map(const Model& model, const ModelMap& map,
+                                               const ReadOptions& options = {});
+
+// The triangles that the map is on: those of its material, with its UV set and transform.
+[[nodiscard]] TEX_API MeshSelection selection_of(const Model& model, const ModelMap& map);
+
+// The maps of a material, by its name or its number from 0; all maps if `material` is empty. Errors: bad_option (there
+// is no such material).
+[[nodiscard]] TEX_API Result<std::vector<ModelMap>> maps_of(const Model& model, const std::string& material);
+
+}  // namespace tex::inline v1

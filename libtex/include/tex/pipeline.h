@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pipeline.h: from file to file, row by row.
-//
-// The verbs of the other headers take and return whole images. The functions here read a file a few rows at a time and
-// write each row of texel blocks as soon as it is finished. Memory therefore holds only a few strips of rows, and
-// decoding runs in parallel with all other steps. The output has the same bytes as the verbs produce when they are
-// called one after the other.
+// pipeline.h: from file to file, a few rows at a time.
 
 #pragma once
 
@@ -14,23 +9,27 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <tex/bake.h>
 #include <tex/blend.h>
-#include <tex/color.h>
-#include <tex/container.h>
-#include <tex/execution.h>
-#include <tex/height_field.h>
+#include <tex/file.h>
+#include <tex/height.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
-#include <tex/result.h>
-#include <tex/roughness.h>
-#include <tex/scale.h>
-#include <tex/source.h>
+#include <tex/types.h>
 
-#pragma GCC visibility push(default)
-namespace tex {
+namespace tex::inline v1 {
+
+// -- pipeline ------------------------------------------------------------------------------------------------------
+//
+// From file to file, row by row.
+//
+// The verbs of the other headers take and return whole images. The functions here read a file a few rows at a time and
+// write each row of texel blocks as soon as it is finished. Memory therefore holds only a few strips of rows, and
+// decoding runs in parallel with all other steps. The output has the same bytes as the verbs produce when they are
+// called one after the other.
 
 // Returns the name of the file for a level, if each level gets its own file. May throw std::bad_alloc only.
 using LevelNames = std::function<std::string(int level)>;
@@ -73,7 +72,7 @@ struct OtherInputs {
 // Puts data beside the normals of a map in memory, which is to be packed in this encoding, as the functions below do.
 // Errors: bad_option (the encoding cannot hold them; a value is not from 0 to 1; a map has another extent; heights,
 // which are not here; blue together with length), those of OtherData::map, out_of_memory.
-[[nodiscard]] Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding);
+[[nodiscard]] TEX_API Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding);
 
 // A file for the data that a source has beside its normals: one channel, the levels that the container holds.
 struct OtherFile {
@@ -108,7 +107,7 @@ struct BakeFileOptions {
 };
 
 // Whether every option is in its range. bake_file() calls it first. Errors: bad_option, which names the option.
-[[nodiscard]] Result<void> validate(const BakeFileOptions& options);
+[[nodiscard]] TEX_API Result<void> validate(const BakeFileOptions& options);
 
 struct BakeFileReport {
     Extent extent;  // of the base level
@@ -143,8 +142,9 @@ struct BakeFileReport {
 // Errors: those of the verbs. `file` is empty if the error concerns the heights and not a file. If there are several
 // errors (a damaged picture, a missing directory), any one of them may be reported. The bytes are the same for every
 // number of threads.
-[[nodiscard]] Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
-                                               const BakeFileOptions& options = {}, const Execution& execution = {});
+[[nodiscard]] TEX_API Result<BakeFileReport> bake_file(const std::string& input, const std::string& output,
+                                                       Container container, const BakeFileOptions& options = {},
+                                                       const Execution& execution = {});
 
 // A roughness map written beside the normal map: build_roughness_chain() of the base level, with the same number of
 // levels (one, if the file holds one), pack_roughness(), write_texture().
@@ -189,7 +189,7 @@ struct PackFileOptions {
 };
 
 // Whether every option is in its range. pack_file() calls it first. Errors: bad_option, which names the option.
-[[nodiscard]] Result<void> validate(const PackFileOptions& options);
+[[nodiscard]] TEX_API Result<void> validate(const PackFileOptions& options);
 
 struct PackFileReport {
     Extent extent;  // of the base level that was written
@@ -218,8 +218,9 @@ struct PackFileReport {
 //
 // Errors: those of the verbs; bad_option if the source lacks the requested level. If there are several errors, any one
 // of them may be reported. The bytes are the same for every number of threads.
-[[nodiscard]] Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
-                                               const PackFileOptions& options = {}, const Execution& execution = {});
+[[nodiscard]] TEX_API Result<PackFileReport> pack_file(const std::string& input, const std::string& output,
+                                                       Container container, const PackFileOptions& options = {},
+                                                       const Execution& execution = {});
 
 // A detail map in a file.
 struct LayerFile {
@@ -236,7 +237,7 @@ struct LayerFile {
     std::function<Result<Plane<float>>()> mask = {};  // returns the mask; empty: 1 everywhere
 
     // Returns these settings as a Layer without detail and mask.
-    [[nodiscard]] Layer layer() const;
+    [[nodiscard]] TEX_API Layer layer() const;
 };
 
 // Detail maps in memory, for calls of blend_file() that blend the same ones. Each is read, and its levels are built,
@@ -245,7 +246,7 @@ class SharedMaps;
 
 // Maps that would make all of them together take more than `most_bytes` are not kept: each call reads them again. Any
 // thread may use the maps. May throw std::bad_alloc.
-[[nodiscard]] std::shared_ptr<SharedMaps> share_maps(std::int64_t most_bytes);
+[[nodiscard]] TEX_API std::shared_ptr<SharedMaps> share_maps(std::int64_t most_bytes);
 
 // What blend_file() does: read_normals() of all maps, blend(), build_mip_chain(), pack(), write_texture().
 struct BlendFileOptions {
@@ -265,7 +266,7 @@ struct BlendFileOptions {
 };
 
 // Whether every option is in its range. blend_file() calls it first. Errors: bad_option, which names the option.
-[[nodiscard]] Result<void> validate(const BlendFileOptions& options);
+[[nodiscard]] TEX_API Result<void> validate(const BlendFileOptions& options);
 
 struct BlendFileReport {
     Extent extent;  // of the base level
@@ -290,9 +291,52 @@ struct BlendFileReport {
 //
 // Errors: those of the verbs. If there are several errors, any one of them may be reported. The bytes are the same for
 // every number of threads.
-[[nodiscard]] Result<BlendFileReport> blend_file(const std::string& input, const std::string& output,
-                                                 Container container, const BlendFileOptions& options = {},
-                                                 const Execution& execution = {});
+[[nodiscard]] TEX_API Result<BlendFileReport> blend_file(const std::string& input, const std::string& output,
+                                                         Container container, const BlendFileOptions& options = {},
+                                                         const Execution& execution = {});
 
-}  // namespace tex
-#pragma GCC visibility pop
+// -- steps ---------------------------------------------------------------------------------------------------------
+//
+// Several steps from file to file, without files in between.
+
+// What bake_file(), pack_file() or blend_file() does with these options.
+using Step = std::variant<BakeFileOptions, PackFileOptions, BlendFileOptions>;
+
+// A map that was read.
+struct MapRead {
+    std::string file;
+    SourceInfo info;
+};
+
+struct StepsReport {
+    Extent extent;  // of the base level
+    int levels = 1;
+    std::size_t bytes = 0;          // of all outputs
+    PackOptions pack;               // of `output`
+    HeightReport heights;           // if the first step bakes
+    Strength strength;              // as in BakeFileReport, if the first step bakes
+    float usual_slope = 0.0f;       // this and the next as in BakeFileReport, if the only step bakes
+    std::int64_t steep_texels = 0;  // maps of floats hold all slopes
+    std::vector<MapRead> maps;
+};
+
+// Whether there is a step, only the first one bakes, none before the last builds levels or writes roughness, and the
+// options of each are in their ranges. Errors: bad_option.
+[[nodiscard]] TEX_API Result<void> validate(const std::vector<Step>& steps);
+
+// Applies `steps` one after the other: the first to the file `input`, each further one to the result of the one before.
+// The last one writes `output`, and the files of its option `more`. The bytes are the same as if each step before the
+// last had written a file of floats (EXR, Encoding::float_, or rgba32f if there is alpha beside the normals) that the
+// next one reads.
+//
+// Of the steps before the last, only the settings that concern normals count: source, heights, strength, bake, level,
+// scale, layers and blend, others.alpha, and the direction of y that `pack` gives. Rows go from step to step, so memory
+// holds what bake_file(), pack_file() and blend_file() say for each. If the layout of a file depends on its texels, a
+// step before the last reads the file once more.
+//
+// Errors: bad_option (as validate(steps)), and those of the three functions.
+[[nodiscard]] TEX_API Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps,
+                                                      const std::string& output, Container container,
+                                                      const Execution& execution = {});
+
+}  // namespace tex::inline v1

@@ -39,6 +39,22 @@
 //    (Execution).
 // 5. Units are in the name or in the comment: texels, degrees, bytes. Strides are in elements, pitches in bytes.
 //
+// Headers
+// -------
+//
+//     types.h     names, results, execution; extents, planes, images; normal maps, mip chains
+//     format.h    formats, swizzles, encodings, textures
+//     height.h    height_field(), deband(), strength of units, colour spaces
+//     bake.h      bake()                                mip.h       build_mip_chain(), build_roughness_chain()
+//     blend.h     scale(), blend()                      pack.h      pack(), unpack(), pack_roughness()
+//     surface.h   integrate(), curvature()              mesh.h      meshes, models, tangents, convert, transfer()
+//     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), blend_file(), steps
+//     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
+//     tex_c.h     the same for C, Rust and C#
+//
+// Options stand beside their verb. Everything is in the inline namespace v1, so that programs that were built for
+// another major version cannot link by mistake.
+//
 // Threads: any number of threads may call any function at the same time, on different objects or on the same const
 // object.
 
@@ -48,65 +64,24 @@
 #include <utility>
 #include <vector>
 
-#include <tex/angular_error.h>
-#include <tex/execution.h>
-#include <tex/format.h>
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/mesh.h>
-#include <tex/mip_chain.h>
-#include <tex/names.h>
-#include <tex/normal_map.h>
-#include <tex/result.h>
-#include <tex/texture.h>
-
 #include <tex/bake.h>
-#include <tex/bake_options.h>
 #include <tex/blend.h>
-#include <tex/blend_options.h>
 #include <tex/check.h>
-#include <tex/compare.h>
-#include <tex/convert.h>
-#include <tex/convert_options.h>
-#include <tex/curvature.h>
-#include <tex/deband.h>
-#include <tex/deband_options.h>
-#include <tex/heat_map.h>
-#include <tex/integrate.h>
-#include <tex/integrate_options.h>
-#include <tex/mesh_selection.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/height.h>
+#include <tex/mesh.h>
 #include <tex/mip.h>
-#include <tex/mip_options.h>
 #include <tex/pack.h>
-#include <tex/pack_options.h>
-#include <tex/preview.h>
-#include <tex/preview_options.h>
-#include <tex/roughness.h>
-#include <tex/roughness_options.h>
-#include <tex/scale.h>
-#include <tex/sheet.h>
-#include <tex/swizzle.h>
-#include <tex/tangents.h>
-#include <tex/transfer.h>
-#include <tex/transfer_options.h>
-#include <tex/unpack.h>
-#include <tex/unpack_options.h>
-
-#include <tex/color.h>
-#include <tex/container.h>
-#include <tex/image_io.h>
-#include <tex/mesh_io.h>
-#include <tex/model.h>
 #include <tex/pipeline.h>
-#include <tex/probe.h>
-#include <tex/source.h>
-#include <tex/steps.h>
+#include <tex/preview.h>
+#include <tex/surface.h>
+#include <tex/types.h>
 
-#pragma GCC visibility push(default)
-namespace tex {
+namespace tex::inline v1 {
 
 // The version of the library that is running, not of the header: "0.1.0".
-[[nodiscard]] const char* version();
+[[nodiscard]] TEX_API const char* version();
 
 // The environment of libtex on this machine, for reports.
 struct Runtime {
@@ -114,7 +89,6 @@ struct Runtime {
     // Linked libraries and their versions: ("libpng", "1.6.39").
     std::vector<std::pair<std::string, std::string>> dependencies;
 };
-[[nodiscard]] Runtime runtime();
+[[nodiscard]] TEX_API Runtime runtime();
 
-}  // namespace tex
-#pragma GCC visibility pop
+}  // namespace tex::inline v1

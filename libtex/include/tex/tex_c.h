@@ -300,7 +300,7 @@ TEX_C_API int32_t tex_mip_level(const tex_map* from, int32_t level, const tex_mi
 TEX_C_API int32_t tex_mip_finish(const tex_map* map, int32_t level, const tex_mip_options* options, int32_t first,
                                  int32_t end);
 
-// ---- encode and decode (pack.h, unpack.h) -------------------------------------------------------------------------
+// ---- encode and decode (pack.h) ---------------------------------------------------------------------------------
 
 enum tex_effort { TEX_EFFORT_FAST = 0, TEX_EFFORT_NORMAL = 1, TEX_EFFORT_BEST = 2 };
 enum tex_metric { TEX_METRIC_COMPONENT = 0, TEX_METRIC_ANGLE = 1 };
@@ -356,7 +356,7 @@ typedef struct tex_unpack_options {
 TEX_C_API int32_t tex_unpack(const tex_texels* texels, const tex_unpack_options* options, int32_t first, int32_t end,
                              const tex_map* out);
 
-// ---- normals to normals: scale, blend, angles (scale.h, blend.h, compare.h) ---------------------------------------
+// ---- normals to normals: scale, blend, angles (blend.h, check.h) --------------------------------------------------
 
 enum tex_scale_mode { TEX_SCALE_SLOPE = 0, TEX_SCALE_XY = 1 };
 
@@ -383,7 +383,7 @@ TEX_C_API int32_t tex_blend(const tex_map* base, const tex_map* detail, const te
 // The angles in degrees, 0 to 180, between rows [first, end) of two maps of the same extent.
 TEX_C_API int32_t tex_angles(const tex_map* a, const tex_map* b, int32_t first, int32_t end, const tex_plane* degrees);
 
-// ---- heights: deband and integrate (deband.h, integrate.h) --------------------------------------------------------
+// ---- heights: deband and integrate (height.h, surface.h) --------------------------------------------------------
 
 // Each height depends on all others, so these two take whole planes, run on one thread, and need scratch that is larger
 // than the plane: about 16 bytes for each texel to deband, 30 to integrate.
@@ -432,7 +432,7 @@ TEX_C_API size_t tex_integrate_size(int32_t width, int32_t height, const tex_int
 TEX_C_API int32_t tex_integrate(const tex_map* map, const tex_integrate_options* options, const tex_plane* heights,
                                 tex_integrate_report* report, void* scratch, size_t scratch_size);
 
-// ---- tangents (tangents.h) ----------------------------------------------------------------------------------------
+// ---- tangents (mesh.h) --------------------------------------------------------------------------------------------
 
 enum tex_tangent_method { TEX_MIKKTSPACE = 0, TEX_MESHOPT = 1 };
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The exceptions of tex: one class for each code of ErrorCode (tex/result.h)."""
+"""The exceptions of tex: one class for each code of ErrorCode (tex/types.h)."""
 
 
 class Error(Exception):

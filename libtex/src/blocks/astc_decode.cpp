@@ -9,7 +9,7 @@
 #include "blocks/astc_endpoints.h"
 #include "blocks/astc_ise.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kMostPartitions = 4;
@@ -179,4 +179,4 @@ void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels)
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

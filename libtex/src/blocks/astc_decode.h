@@ -12,7 +12,7 @@
 
 #include "blocks/astc_mode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 [[nodiscard]] constexpr bool is_astc(Format format) {
     return format >= Format::astc_4x4_unorm && format <= Format::astc_12x12_unorm;
@@ -36,4 +36,4 @@ struct AstcTexels {
 // dynamic range.
 void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct Colors {
@@ -73,4 +73,4 @@ AstcEndpoints astc_endpoints(int mode, const std::uint8_t* v) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The modes of endpoints that encoders use; a mode has 2 (mode / 4) + 2 values.
 inline constexpr int kAstcLuminance = 0;
@@ -24,4 +24,4 @@ struct AstcEndpoints {
 // profile for low dynamic range.
 [[nodiscard]] AstcEndpoints astc_endpoints(int mode, const std::uint8_t* values);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The parts of the 8 bits that five trits share, and of the 7 bits of three quints, beside each value.
@@ -278,4 +278,4 @@ void write_astc_ise(AstcBits& bits, int at, int range, int count, const std::uin
     queue.finish();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

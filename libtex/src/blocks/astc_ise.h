@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The 128 bits of a block, from the lowest one.
 struct AstcBits {
@@ -79,4 +79,4 @@ struct AstcMeanings {
 };
 extern const AstcMeanings kAstcMeanings;
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include "blocks/astc_ise.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr unsigned field(unsigned bits, int at, int count) { return bits >> at & ((1u << count) - 1); }
@@ -119,4 +119,4 @@ void astc_partitions(Extent block, int count, unsigned index, std::uint8_t* of_t
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <optional>
 
-#include <tex/image.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kAstcBlockBytes = 16;
 inline constexpr int kAstcMostTexels = 144;
@@ -61,4 +61,4 @@ constexpr AstcShares astc_shares(int part_x, int part_y) {
 // The partitions, 0 to `count` - 1, of the texels of a block, in rows. `index` is of 10 bits.
 void astc_partitions(Extent block, int count, unsigned index, std::uint8_t* of_texels);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "blocks/astc_endpoints.h"
 #include "blocks/astc_ise.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int header_bits(int partitions) { return partitions == 1 ? 17 : 29; }
@@ -189,4 +189,4 @@ void write_astc_void(int x, int y, std::byte* block) {
     write_astc_bits({~std::uint64_t{0x203}, low | low << 16 | low << 32 | high << 48}, block);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

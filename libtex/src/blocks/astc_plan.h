@@ -12,7 +12,7 @@
 
 #include "blocks/astc_mode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Encoders write blocks of up to 8x8 texels.
 inline constexpr int kAstcMostPlanned = 64;
@@ -84,4 +84,4 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
 // A block of one colour: codes of 16 bits.
 void write_astc_void(int x, int y, std::byte* block);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct Color {
@@ -134,4 +134,4 @@ void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte*
     for (int k = 0; k < 4; ++k) block[4 + k] = static_cast<std::byte>(indices >> (8 * k));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -19,7 +19,7 @@
 
 #include "blocks/texels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class Bc1Mode {
     standard,     // c0 <= c1 means three colours and transparent black: BC1
@@ -60,4 +60,4 @@ inline constexpr std::int64_t kGreenErrorUnit = std::int64_t{3} * kCodeUnit;
 // index 0 only.
 void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte* block);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The palette of endpoints e0 and e1; `scale` is the code of 1. Numerators and denominators are whole numbers that
@@ -125,4 +125,4 @@ void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints
     for (int k = 0; k < 6; ++k) block[2 + k] = static_cast<std::byte>(indices >> (8 * k));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -20,7 +20,7 @@
 
 #include "blocks/texels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes a block into texels in row-major order: [0, 1], or [-1, 1] for snorm. Any 8 bytes are a valid block.
 void decode_bc4_unorm(const std::byte* block, float values[16]);
@@ -55,4 +55,4 @@ inline constexpr std::int64_t kBc4ErrorUnit = std::int64_t{35} * kCodeUnit;
 // Writes the block. Each texel takes the nearest value, or the first of equally near ones.
 void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints, std::byte* block);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "blocks/bc6h_modes.h"
 #include "blocks/bptc.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kEndpoints = 4;
@@ -144,4 +144,4 @@ void decode_bc6h(const std::byte* block, bool is_signed, std::uint16_t rgb[16][3
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

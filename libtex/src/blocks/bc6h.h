@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes a block into the bits of half floats, of texels in row-major order: 0 to 65504, or -infinity to 65504 if
 // `is_signed`. Any 16 bytes are a block; the four modes that are reserved give 0.
 void decode_bc6h(const std::byte* block, bool is_signed, std::uint16_t rgb[16][3]);
 
-}  // namespace tex
+}  // namespace tex::inline v1

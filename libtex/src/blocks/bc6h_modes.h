@@ -4,7 +4,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct Bc6hMode {
     unsigned number;      // the lowest two bits of the block, or five if those are 2 or 3
@@ -61,4 +61,4 @@ inline constexpr Bc6hMode kBc6hModes[] = {
 };
 // clang-format on
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "blocks/bptc.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // In bits of a block, but the number of subsets.
@@ -89,4 +89,4 @@ void decode_bc7(const std::byte* block, std::uint8_t rgba[16][4]) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

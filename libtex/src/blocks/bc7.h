@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes a block into codes of texels in row-major order. Any 16 bytes are a block; the one mode that is reserved (the
 // first byte is 0) gives 0 for all channels.
 void decode_bc7(const std::byte* block, std::uint8_t rgba[16][4]);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Bit k is the subset of texel k.
@@ -69,4 +69,4 @@ void read_bptc_weights(BptcBits& bits, int subsets, unsigned partition, int inde
         weights[texel] = table[bits.take(index_bits - (is_anchor(subsets, partition, texel) ? 1 : 0))];
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

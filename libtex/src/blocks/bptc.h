@@ -11,7 +11,7 @@
 
 #include <tex/format.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Formats that are read alone.
 constexpr bool is_bptc(Format format) {
@@ -50,4 +50,4 @@ void read_bptc_weights(BptcBits& bits, int subsets, unsigned partition, int inde
 // The value between two endpoints. Exact for negative ones, too: the shift rounds down.
 constexpr int bptc_between(int e0, int e1, int weight) { return ((64 - weight) * e0 + weight * e1 + 32) >> 6; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

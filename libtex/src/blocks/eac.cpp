@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The eight codes of a palette, counted from the lowest one, clamped.
@@ -57,4 +57,4 @@ void write_eac(EacCodes codes, EacPalette palette, const std::int32_t nearest[16
     for (int k = 0; k < 6; ++k) block[2 + k] = static_cast<std::byte>(selectors >> (40 - 8 * k));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -20,7 +20,7 @@
 
 #include "blocks/texels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Modifiers by table and selector. In each table, selector k has the modifier -1 - m if selector k + 4 has m: the
 // palette is symmetrical about -1/2.
@@ -71,4 +71,4 @@ inline std::int32_t to_eac_units(float n, int top) {
 // Writes a block. The lowest three bits of nearest[k] are the selector of texel k (row-major).
 void write_eac(EacCodes codes, EacPalette palette, const std::int32_t nearest[16], std::byte* block);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,7 +3,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Texels along an edge of a block of BC1 to BC5. Code for every format takes the edges from FormatInfo::block.
 inline constexpr int kBlockEdge = 4;
@@ -15,4 +15,4 @@ constexpr int blocks_across(int texels, int edge = kBlockEdge) { return (texels 
 // The number of texels in these blocks: `texels`, rounded up.
 constexpr int whole_blocks(int texels, int edge = kBlockEdge) { return blocks_across(texels, edge) * edge; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "blocks/bc4.h"
 #include "blocks/eac.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 int byte_at(const std::byte* half, int k) { return std::to_integer<int>(half[k]); }
@@ -242,4 +242,4 @@ int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLin
     return to.count;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,7 +17,7 @@
 
 #include <tex/format.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kHalfBytes = 8;
 
@@ -76,4 +76,4 @@ inline constexpr int kMostVariants = 9;
 int half_variants(HalfKind kind, const std::byte* source, Copied copied, HalfLine line,
                   HalfVariant variants[kMostVariants]);
 
-}  // namespace tex
+}  // namespace tex::inline v1

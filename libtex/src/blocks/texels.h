@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Encoders use whole numbers, so that they compare errors exactly. Values are multiples of 1/1024 of a code. This
 // represents 8-bit sources exactly and changes others by less than 0.0003 degrees.
@@ -43,4 +43,4 @@ Nearest nearest(const std::int64_t (&palette)[N], std::int64_t wanted) {
     return best;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

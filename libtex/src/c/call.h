@@ -18,15 +18,13 @@
 #include <type_traits>
 
 #include <tex/format.h>
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/names.h>
-#include <tex/normal_map.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Copies a structure of options, as the rules of its ABI say: TEX_OK, TEX_BAD_ARGUMENT or TEX_BAD_OPTION. (All of them
 // have the size of their first version.)
@@ -137,4 +135,4 @@ int32_t with_scratch(void* scratch, std::size_t size, std::size_t wanted, const 
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include "kernels/bake.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Hands out rows of heights, and notes whether they are finite.
@@ -59,7 +59,7 @@ void add_bake_rows(ScratchSize& size, int width, int radius) {
     for (int k = 0; k < 2; ++k) size.vector<const float*>(window);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

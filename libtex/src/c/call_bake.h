@@ -3,12 +3,12 @@
 
 #pragma once
 
-#include <tex/bake_options.h>
+#include <tex/bake.h>
 
 #include "c/call.h"
 #include "rows/bake_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether these are options of a bake.
 bool is_bake(int32_t kernel, float gaussian_sigma, int32_t wrap_x, int32_t wrap_y);
@@ -21,4 +21,4 @@ int gradient_radius(const BakeOptions& options);
 void add_gradient(ScratchSize& size, int radius);
 void add_bake_rows(ScratchSize& size, int width, int radius);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <tex/check.h>
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "c/call.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 bool are_levels(const tex_texels* levels, int32_t count) {
@@ -80,7 +80,7 @@ int32_t check_levels(const tex_texels* levels, int32_t level_count, const tex_ch
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

@@ -1,48 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/unpack_options.h>
+#include <tex/pack.h>
 
-#include "blocks/extent.h"
 #include "c/call.h"
 #include "kernels/unpack.h"
-#include "rows/decode_rows.h"
+#include "rows/stored_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
-
-// Texels that are decoded together, on the stack: whole blocks of every size, and whole vectors.
-constexpr int kDecodeChunk = 240;
-constexpr int kTallestBlock = 12;
-
-// Rows of a strip, of at most kDecodeChunk texels.
-struct StripOnStack {
-    float values[4][kTallestBlock * kDecodeChunk];
-
-    ChannelRows rows(const bool wanted[4]) {
-        ChannelRows out;
-        for (int c = 0; c < 4; ++c) out.channel[c] = wanted[c] ? values[c] : nullptr;
-        return out;
-    }
-    float* row(int channel, int r) { return values[channel] + r * kDecodeChunk; }
-};
-
-struct StoredTexels {
-    const std::byte* bytes;
-    std::size_t pitch;
-    Format format;
-    FormatInfo info;
-    int width, height;
-
-    // Decodes `count` texels of the strip that begins at row j, from column i on, as many rows as a block has.
-    void decode(int j, int i, int count, const ChannelRows& rows, std::ptrdiff_t stride) const {
-        const std::byte* from = bytes + static_cast<std::size_t>(j / info.block.height) * pitch +
-                                static_cast<std::size_t>(i / info.block.width) * info.block_bytes;
-        if (info.has_blocks()) return decode_row_of_blocks(format, from, count, rows, stride);
-        decode_texels(format, from, count, rows);
-    }
-};
 
 bool are_texels(const tex_texels* texels) {
     return texels != nullptr && texels->bytes != nullptr && is_extent(texels->width, texels->height) &&
@@ -50,7 +17,7 @@ bool are_texels(const tex_texels* texels) {
            texels->pitch >= level_bytes(static_cast<Format>(texels->format), {texels->width, 1});
 }
 
-StoredTexels stored(const tex_texels& texels) {
+StoredRows stored(const tex_texels& texels) {
     const auto format = static_cast<Format>(texels.format);
     return {static_cast<const std::byte*>(texels.bytes),
             texels.pitch,
@@ -58,28 +25,6 @@ StoredTexels stored(const tex_texels& texels) {
             format_info(format),
             texels.width,
             texels.height};
-}
-
-// Decodes a strip into the caller's rows: whole blocks directly, what is left through the stack.
-void decode_strip_exactly(const StoredTexels& from, int j, const tex_channels& out) {
-    const int block = from.info.block.width, rows = std::min(from.info.block.height, from.height - j);
-    const int direct = rows == from.info.block.height ? from.width / block * block : 0;
-    bool wanted[4];
-    ChannelRows to;
-    for (int c = 0; c < 4; ++c) {
-        wanted[c] = out.channel[c] != nullptr;
-        to.channel[c] = wanted[c] ? out.channel[c] + j * out.stride : nullptr;
-    }
-    if (direct > 0) from.decode(j, 0, direct, to, out.stride);
-    StripOnStack strip;
-    for (int i = direct; i < from.width; i += kDecodeChunk) {
-        const int count = std::min(kDecodeChunk, from.width - i);
-        from.decode(j, i, count, strip.rows(wanted), kDecodeChunk);
-        for (int c = 0; c < 4; ++c) {
-            for (int r = 0; r < rows && wanted[c]; ++r)
-                std::copy_n(strip.row(c, r), count, to.channel[c] + r * out.stride + i);
-        }
-    }
 }
 
 int find_channel(const uint8_t (&swizzle)[4], int component) {
@@ -112,7 +57,7 @@ int32_t unpack_rule(const tex_unpack_options& o, const FormatInfo& info, UnpackR
     return TEX_OK;
 }
 
-void unpack_strip(const StoredTexels& from, int j, const Sources& sources, const UnpackRule& rule, const tex_map& out) {
+void unpack_strip(const StoredRows& from, int j, const Sources& sources, const UnpackRule& rule, const tex_map& out) {
     const int rows = std::min(from.info.block.height, from.height - j);
     bool wanted[4];
     for (int c = 0; c < 4; ++c) wanted[c] = c == sources.x || c == sources.y || c == sources.z;
@@ -134,26 +79,26 @@ void unpack_strip(const StoredTexels& from, int j, const Sources& sources, const
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 
 int32_t tex_decode(const tex_texels* texels, int32_t first, int32_t end, const tex_channels* out) {
     if (!are_texels(texels) || out == nullptr || out->stride < texels->width) return TEX_BAD_ARGUMENT;
-    const StoredTexels from = stored(*texels);
+    const StoredRows from = stored(*texels);
     const int block = from.info.block.height;
     if (!are_blocks(first, end, texels->height, block)) return TEX_BAD_ARGUMENT;
     for (int c = from.info.channels; c < 4; ++c) {
         if (out->channel[c] != nullptr) return TEX_BAD_ARGUMENT;
     }
-    for (int j = first; j < end; j += block) decode_strip_exactly(from, j, *out);
+    for (int j = first; j < end; j += block) from.decode_exactly(j, out->channel, out->stride);
     return TEX_OK;
 }
 
 int32_t tex_unpack(const tex_texels* texels, const tex_unpack_options* options, int32_t first, int32_t end,
                    const tex_map* out) {
     if (!are_texels(texels) || !is_map(out) || !same_extent(*texels, *out)) return TEX_BAD_ARGUMENT;
-    const StoredTexels from = stored(*texels);
+    const StoredRows from = stored(*texels);
     const int block = from.info.block.height;
     if (!are_blocks(first, end, texels->height, block)) return TEX_BAD_ARGUMENT;
     tex_unpack_options o;

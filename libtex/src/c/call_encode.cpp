@@ -9,7 +9,7 @@
 #include "rows/pack_rows.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 int32_t encode_options(const tex_encode_options* options, PackOptions& out) {
@@ -96,7 +96,7 @@ bool is_prepared(const PackOptions& options) {
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 
@@ -140,8 +140,9 @@ int32_t tex_encode(const tex_map* map, const tex_encode_options* options, int32_
     if (block > 1) {
         const Extent extent{map->width, end - first};
         const NormalRow row = row_of(tex_map{map->x, map->y, map->y, map->stride, 0, 0}, first);
-        encode_blocks({row.x, extent, map->stride}, {row.y, extent, map->stride}, o,
-                      out + static_cast<std::size_t>(first / block) * pitch, pitch);
+        if (!encode_blocks({row.x, extent, map->stride}, {row.y, extent, map->stride}, o,
+                           out + static_cast<std::size_t>(first / block) * pitch, pitch))
+            return TEX_BAD_ARGUMENT;
         return TEX_OK;
     }
     for (int j = first; j < end; ++j) encode_texels(*map, o, j, out + static_cast<std::size_t>(j) * pitch);

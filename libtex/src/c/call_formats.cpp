@@ -6,7 +6,7 @@
 
 #include "c/call.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Numbers of C are those of the enumerators of C++. What is added there gets its number here.
@@ -37,7 +37,7 @@ constexpr const char* kErrorTexts[] = {
 static_assert(std::size(kErrorTexts) == TEX_NOT_PREPARED + 1);
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "c/call.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The numbers of a vertex, which need not be aligned.
@@ -49,7 +49,7 @@ int32_t make_corner_tangents(const tex_mesh& mesh, TangentMethod method, float* 
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

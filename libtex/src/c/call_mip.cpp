@@ -4,7 +4,7 @@
 #include "rows/mip_rows.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 int32_t mip_options(const tex_mip_options* options, MipOptions& out) {
@@ -48,7 +48,7 @@ std::size_t mip_scratch(Extent from, const MipOptions& options) {
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

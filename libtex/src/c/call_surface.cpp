@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include <tex/deband_options.h>
-#include <tex/integrate_options.h>
+#include <tex/height.h>
+#include <tex/surface.h>
 
 #include "c/call_bake.h"
 #include "kernels/slopes.h"
@@ -14,7 +14,7 @@
 #include "surface/debander.h"
 #include "surface/integrator.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 const Execution kThisThread{1, {}};
@@ -108,7 +108,7 @@ int32_t integrate_map(const NormalMap& map, const IntegrateOptions& options, con
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

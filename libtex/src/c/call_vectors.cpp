@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <tex/blend_options.h>
-#include <tex/scale.h>
+#include <tex/blend.h>
 
 #include "c/call.h"
 #include "kernels/angle.h"
@@ -11,7 +10,7 @@
 #include "kernels/scale.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kBlendChunk = 256;  // texels that are blended together, on the stack
@@ -31,7 +30,7 @@ void blend_chunk(const NormalRow& base, const NormalRow& detail, const float* we
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 
 using namespace tex;
 

@@ -10,7 +10,7 @@
 #include "checks/texel_counts.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kTogether = 0.5;  // of the texels: the share whose left and upper neighbours have the value, too
@@ -129,7 +129,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
             }
         }
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent.height, kRowsPerPiece, find); !done) return done;
     background.masked = background.texels;
     for (int j = 0; j < extent.height; ++j) {
@@ -176,4 +176,4 @@ std::string background_name(const Background& background, const Stored& stored) 
     return text + ")";
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

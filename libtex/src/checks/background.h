@@ -9,12 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr double kLeastBackground = 0.0005;  // share of the texels
 
@@ -41,4 +40,4 @@ Result<std::optional<Background>> find_background(const Stored& stored, const Ex
 // "black", "grey", "white", or the components.
 std::string background_name(const Background& background, const Stored& stored);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kValueBins = 1024;
@@ -50,4 +50,4 @@ Centre measure_centre(const Stored& stored, const Background* background) {
 double srgb_encoded(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * math::pow(c, 1.0 / 2.4) - 0.055; }
 double srgb_decoded(double c) { return c <= 0.04045 ? c / 12.92 : math::pow((c + 0.055) / 1.055, 2.4); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 #include "checks/background.h"
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Medians of the stored x and y over the sampled texels in which at least one of them is not black, so that the fill
 // outside UV islands does not count; nor does the background, which may be null. Half, if no texel is left.
@@ -22,4 +22,4 @@ Centre measure_centre(const Stored& stored, const Background* background = nullp
 double srgb_encoded(double c);
 double srgb_decoded(double c);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,7 +18,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // What a strip of the map shows. Sums of doubles depend on their order, so each strip has its own.
@@ -173,4 +173,4 @@ Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,10 +5,10 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
-// Preconditions: subject.options.mesh is not null, subject.has_vectors. Errors: unsupported, as described in convert.h;
+// Preconditions: subject.options.mesh is not null, subject.has_vectors. Errors: unsupported, as described in mesh.h;
 // cancelled.
 Result<void> check_chart_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A neighbourhood of 3x3 regions counts as clear if its correlation is at least kLeastCorrelation and at least the
@@ -152,4 +152,4 @@ void check_convention_rules(const Subject& subject, Findings& findings) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include "rows/math.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kWideMap = 512;
@@ -202,7 +202,7 @@ Result<Curl> measure_curl(const Stored& stored, const Execution& execution) {
         for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
             parts[k] = sum_window(stored.extent(), windows[k], slopes_of(stored, windows[k]));
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, static_cast<int>(windows.size()), 1, body); !done) return done.error();
     return join(parts);
 }
@@ -214,4 +214,4 @@ std::optional<YAxis> clear_y(const Curl& curl) {
     return curl.correlation > 0.0 ? YAxis::up : YAxis::down;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,13 +11,11 @@
 #include <optional>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/normal_map.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr float kSlopeJump = 0.5f;         // a change of slope over two texels that counts as a jump
 inline constexpr double kLeastCorrelation = 0.2;  // smaller ones prove nothing
@@ -76,4 +74,4 @@ double diagonal_share(const Stored& stored);
 // Where green points, if that is clear.
 std::optional<YAxis> clear_y(const Curl& curl);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -20,7 +20,7 @@
 #include "checks/thresholds.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Thresholds that follow from the nature of the damage and need no fitting. The fitted ones are in thresholds.h.
@@ -89,7 +89,7 @@ Result<void> measure_traces(const Subject& subject, bool wants_seam, Traces& tra
         measures.emplace_back(
             [&] { traces.centre = measure_centre(stored, subject.background ? &*subject.background : nullptr); });
     if (wants_seam) measures.emplace_back([&] { traces.seam = measure_seam(stored); });
-    const Execution silent{subject.execution.threads, {}};
+    const Execution silent = subject.execution.quiet();
     return parallel_for(silent, static_cast<int>(measures.size()), 1,
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
 }
@@ -261,4 +261,4 @@ Result<void> check_damage_rules(const Subject& subject, Findings& findings) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "checks/thresholds.h"
 #include "checks/turn.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Of the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
@@ -73,4 +73,4 @@ Result<void> check_field_rules(const Subject& subject, Findings& findings) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,13 +3,13 @@
 
 #pragma once
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Errors: cancelled, out_of_memory.
 Result<void> check_field_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "blocks/astc_decode.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 bool is_power_of_two(int n) { return (n & (n - 1)) == 0; }
@@ -141,4 +141,4 @@ void check_file_rules(const Subject& subject, Findings& findings) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

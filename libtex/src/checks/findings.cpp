@@ -8,7 +8,7 @@
 
 #include "checks/rules.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 bool lists(const std::vector<std::string>& names, const Rule& row) {
@@ -78,4 +78,4 @@ std::string texel_text(int column, int row) {
 
 std::string direction(YAxis y) { return std::string(name_of(kYAxisNames, y)); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

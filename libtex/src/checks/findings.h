@@ -14,7 +14,7 @@
 #include "checks/stored.h"
 #include "checks/texel_counts.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A texture, its decoded base level, and measurements of it. If the swizzle has no x or no y, only the file is checked.
 struct Subject {
@@ -59,4 +59,4 @@ std::string extent_text(Extent extent);
 std::string texel_text(int column, int row);  // "column 3, row 7"
 std::string direction(YAxis y);
 
-}  // namespace tex
+}  // namespace tex::inline v1

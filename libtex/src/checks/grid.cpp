@@ -11,7 +11,7 @@
 #include "blocks/extent.h"
 #include "checks/median.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Blocks of half the size are as visible half-way between the borders as at the borders, and more than at the quarters.
@@ -179,4 +179,4 @@ double palette_share(const Stored& stored) {
     return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // How much the step from one texel to the next stands out at the borders of blocks. For each column (row), the mean
 // step across its border is divided by the mean of its two neighbours' steps. The result is the median of those ratios
@@ -24,4 +24,4 @@ double grid_excess(const Stored& stored, int block);
 // that count.
 double palette_share(const Stored& stored);
 
-}  // namespace tex
+}  // namespace tex::inline v1

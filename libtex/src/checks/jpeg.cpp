@@ -11,7 +11,7 @@
 #include "checks/median.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Coefficients (u, v) with 1 <= u + v <= 4: higher ones are mostly 0 after quantisation.
@@ -159,4 +159,4 @@ JpegTrace measure_jpeg(const Stored& stored, int offset) {
     return {median(strengths), median(scales)};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A JPEG stores the cosine transform of 8x8 blocks of luma as multiples of a step for each coefficient. After decoding
 // and rounding to 8 bits, coefficients still lie close to these multiples. (Fan, de Queiroz: Identification of Bitmap
@@ -25,4 +25,4 @@ struct JpegTrace {
 // fewer than three channels, have signed values, or are too small.
 JpegTrace measure_jpeg(const Stored& stored, int offset = 0);
 
-}  // namespace tex
+}  // namespace tex::inline v1

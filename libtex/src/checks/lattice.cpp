@@ -9,7 +9,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kSlopeBins = 2048;  // of slopes from -1/2 to 1/2
@@ -109,4 +109,4 @@ Lattice measure_lattice(const Stored& stored) {
     return lattice;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

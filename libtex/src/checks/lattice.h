@@ -5,7 +5,7 @@
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Central differences of heights in steps of d are multiples of d/2, so the histogram of slopes is a comb.
 struct Lattice {
@@ -18,4 +18,4 @@ struct Lattice {
 // codes), to 1/16.
 Lattice measure_lattice(const Stored& stored);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,14 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "kernels/level_sums.h"
 #include "kernels/mip.h"
 #include "kernels/stored.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A larger level, or the rows of it that begin at row `first`.
@@ -200,4 +200,4 @@ Result<void> measure_level(const Stored& stored, const NormalMap& averages, int 
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

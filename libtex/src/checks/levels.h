@@ -3,13 +3,11 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/mip_chain.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Texels `first` to `first + count - 1` of row j of a level as vectors, as stored or with z reconstructed. A texel
 // without a usable normal is (0, 0, 0).
@@ -42,4 +40,4 @@ struct LevelMeasure {
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
                            LevelMeasure& measure);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The median, the upper one of two; 0 without values. Changes the order of `values`.
 inline double median(std::vector<double>& values) {
@@ -17,4 +17,4 @@ inline double median(std::vector<double>& values) {
     return *middle;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

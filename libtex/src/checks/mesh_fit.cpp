@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "checks/mesh_seams.h"
 #include "checks/seam_evidence.h"
 #include "checks/tangent_rules.h"
 #include "checks/thresholds.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kConfident = 0.99;
@@ -151,4 +151,4 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     return std::optional(evidence);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

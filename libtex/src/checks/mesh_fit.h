@@ -5,7 +5,7 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Where green of the map points on the mesh of subject.options.mesh, which is not null: see MeshToCheck.
 [[nodiscard]] YAxis y_on_mesh(const Subject& subject);
@@ -16,4 +16,4 @@ namespace tex {
 // Precondition: subject.options.mesh is not null, subject.has_vectors. Errors: as make_tangents().
 Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

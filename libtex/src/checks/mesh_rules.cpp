@@ -8,7 +8,7 @@
 #include "checks/mesh_fit.h"
 #include "checks/tangent_rules.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Findings& findings) {
     const MeshToCheck* const mesh = subject.options.mesh;
@@ -22,4 +22,4 @@ Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Fin
     return seams;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,10 +5,10 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Checks the mesh of subject.options.mesh, and the map on it. Returns nullopt if there is no mesh, no seam to measure,
 // or no normals. Errors: as check() with a mesh.
 Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

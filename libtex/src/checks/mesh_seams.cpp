@@ -11,7 +11,7 @@
 #include "checks/tangent_rules.h"
 #include "mesh/vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kMostEdges = 1 << 14;
@@ -239,4 +239,4 @@ SeamVerdict compare_gaps(const SeamSamples& samples, const std::vector<Vector3>&
     return verdict;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

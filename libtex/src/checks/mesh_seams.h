@@ -13,7 +13,7 @@
 #include "checks/stored.h"
 #include "mesh/frames.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // One side of an edge: the triangle, and its corners at the ends of the edge.
 struct SeamSide {
@@ -75,4 +75,4 @@ struct SeamVerdict {
 };
 SeamVerdict compare_gaps(const SeamSamples& samples, const std::vector<Vector3>& a, const std::vector<Vector3>& b);
 
-}  // namespace tex
+}  // namespace tex::inline v1

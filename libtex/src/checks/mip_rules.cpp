@@ -11,7 +11,7 @@
 #include "checks/thresholds.h"
 #include "formats/level_planes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kLeastSide = 16;         // of a level to judge: smaller levels have too few texels
@@ -140,4 +140,4 @@ Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

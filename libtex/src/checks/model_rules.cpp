@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <string>
 
-#include <tex/model.h>
+#include <tex/mesh.h>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // "baseColorTexture of Leather, emissiveTexture of 3"
@@ -78,4 +78,4 @@ void check_model_rules(const Subject& subject, Findings& findings) {
         findings.add("N805", "doubleSided is true, and w of tangents is 1 and -1");
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,9 +5,9 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Checks how the model of subject.options.model uses the map, if there is a model.
 void check_model_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

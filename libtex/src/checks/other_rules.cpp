@@ -10,7 +10,7 @@
 
 #include "rows/z_evidence.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kAlpha = 3;
@@ -111,4 +111,4 @@ Result<void> check_other_rules(const Subject& subject, Findings& findings) {
     return check_stored_z(subject, findings);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

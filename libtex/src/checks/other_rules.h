@@ -5,9 +5,9 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Errors: cancelled, out_of_memory.
 Result<void> check_other_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "surface/nearest.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // In the plane of charts: background that differs from the chart beside it.
@@ -158,4 +158,4 @@ Result<PaddingMeasure> measure_padding(const Stored& stored, Plane<std::int32_t>
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

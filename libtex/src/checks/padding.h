@@ -5,13 +5,11 @@
 
 #include <cstdint>
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // In a plane of charts: no triangle covers the texel.
 inline constexpr std::int32_t kNoChart = -1;
@@ -32,4 +30,4 @@ struct PaddingMeasure {
 // Errors: out_of_memory, cancelled.
 Result<PaddingMeasure> measure_padding(const Stored& stored, Plane<std::int32_t>& charts, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kReach = 3;           // the greatest shift to look for, in texels
@@ -100,4 +100,4 @@ std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& f
     return pair;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,10 +5,10 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Checks whether the normals follow from subject.options.height. Returns nullopt if there are no heights, or no slopes
 // to compare.
 std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using enum RuleFamily;
@@ -357,4 +357,4 @@ const Rule& rule(std::string_view id) {
 
 bool has_id(std::string_view ids, std::string_view id) { return !id.empty() && ids.find(id) != std::string_view::npos; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

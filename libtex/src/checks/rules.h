@@ -5,7 +5,7 @@
 
 #include <tex/check.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The rule `id`, which is in the table.
 const Rule& rule(std::string_view id);
@@ -13,4 +13,4 @@ const Rule& rule(std::string_view id);
 // Whether the list `ids`, separated by blanks, contains `id`.
 bool has_id(std::string_view ids, std::string_view id);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kLeastLines = 8;
@@ -45,4 +45,4 @@ double ratio_of(const Stored& stored, bool columns) {
 
 Seam measure_seam(const Stored& stored) { return {ratio_of(stored, true), ratio_of(stored, false)}; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The mean step of x or y from the last line to the first, divided by the 98th percentile of the mean steps between
 // lines inside. Every texel counts. 0 along an axis of fewer than 8 texels.
@@ -16,4 +16,4 @@ struct Seam {
 };
 Seam measure_seam(const Stored& stored);
 
-}  // namespace tex
+}  // namespace tex::inline v1

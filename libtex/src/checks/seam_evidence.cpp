@@ -9,7 +9,7 @@
 #include "checks/tangent_rules.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The side of a square around the worst edge, in texels.
@@ -63,4 +63,4 @@ SeamEvidence seam_evidence(const SeamSamples& samples, const std::vector<Vector3
     return evidence;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

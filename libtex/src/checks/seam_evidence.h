@@ -9,7 +9,7 @@
 
 #include "checks/mesh_seams.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The angle between two unit normals with this difference.
 double seam_degrees(Vector3 gap);
@@ -17,4 +17,4 @@ double seam_degrees(Vector3 gap);
 // The statistics of all gaps of the samples. `extent` is that of the map.
 SeamEvidence seam_evidence(const SeamSamples& samples, const std::vector<Vector3>& gaps, Extent extent);
 
-}  // namespace tex
+}  // namespace tex::inline v1

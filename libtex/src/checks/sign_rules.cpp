@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Shares of texels outside the unit circle. Read with the wrong sign, flat texels lie in its corners.
@@ -54,4 +54,4 @@ Result<void> check_sign_rules(const Subject& subject, Findings& findings) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,11 +8,11 @@
 #include <limits>
 #include <optional>
 
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "rows/unpack_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kWindowSize = 256;
@@ -128,4 +128,4 @@ Slopes halved(const Slopes& slopes) {
     return half;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

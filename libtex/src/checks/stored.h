@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <tex/format.h>
-#include <tex/image.h>
-#include <tex/unpack.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The channels of a level and their meaning. Green is as stored: y points up if it does in the file.
 struct Stored {
@@ -66,4 +66,4 @@ inline constexpr float kLeastZ = 0.05f;  // of a usable normal
 // Halves the size. Each texel is the mean of the four that it covers, or NaN if one of them is NaN.
 Slopes halved(const Slopes& slopes);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "checks/thresholds.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 double length_of(const Float4& t) {
@@ -195,4 +195,4 @@ Result<void> check_tangent_rules(const Subject& subject, Findings& findings) {
     return compare_with_methods(selected, subject.execution, findings);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

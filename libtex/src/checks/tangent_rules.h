@@ -9,7 +9,7 @@
 
 #include "checks/findings.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr double kDegrees = 57.295779513082320877;  // of a radian
 
@@ -20,4 +20,4 @@ double area_in_map(const MeshPart& part, std::size_t triangle);
 // Precondition: subject.options.mesh is not null. Errors: as make_tangents().
 Result<void> check_tangent_rules(const Subject& subject, Findings& findings);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "kernels/stored.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr float kCodeAndHalf = 1.5f / 255.0f;
@@ -241,4 +241,4 @@ Result<TexelCounts> count_texels(const Stored& stored, const Execution& executio
     return combine(rows, extent, background == nullptr ? 0 : background->masked);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,13 +6,12 @@
 #include <array>
 #include <cstdint>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/background.h"
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Two codes of 8 bits, as a component.
 inline constexpr float kTwoCodes = 4.0f / 255.0f;
@@ -72,4 +71,4 @@ struct TexelCounts {
 Result<TexelCounts> count_texels(const Stored& stored, const Execution& execution,
                                  const Background* background = nullptr);
 
-}  // namespace tex
+}  // namespace tex::inline v1

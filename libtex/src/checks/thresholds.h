@@ -10,7 +10,7 @@
 
 #pragma once
 
-namespace tex::thresholds {
+namespace tex::inline v1::thresholds {
 
 // -- fitted, with the two values they lie between -----------------------------------------------------------
 inline constexpr double kJpegTrace = 0.61;        // JpegTrace::weight(): 0.47 (a JPEG of quality 75) and 0.80
@@ -70,4 +70,4 @@ inline constexpr double kBackground = 0.1;  // share of one value among the texe
 inline constexpr double kBleed = 0.17;      // the least difference in x and y that harms: about 10 degrees
 inline constexpr double kBleedShare = 0.1;  // of the texels on borders
 
-}  // namespace tex::thresholds
+}  // namespace tex::inline v1::thresholds

@@ -11,7 +11,7 @@
 #include "rows/math.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 void add_pair(TurnSums& sums, float weight, float curl, float divergence) {
@@ -96,7 +96,7 @@ Result<Turn> measure_turn(const Stored& stored, const Execution& execution) {
             }
         }
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, static_cast<int>(windows.size()), 1, body); !done) return done.error();
     Turn turn;
     for (const Turn& part : parts) {
@@ -105,4 +105,4 @@ Result<Turn> measure_turn(const Stored& stored, const Execution& execution) {
     return turn;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,12 +17,11 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Sums over texels, with y as the file has it.
 struct TurnSums {
@@ -59,4 +58,4 @@ struct Turn {
 // Measures the texels of sample_windows(). Errors: cancelled, out_of_memory.
 Result<Turn> measure_turn(const Stored& stored, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

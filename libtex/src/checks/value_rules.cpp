@@ -8,7 +8,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kOffLengthShare = 0.05;
@@ -185,4 +185,4 @@ void check_value_rules(const Subject& subject, Findings& findings) {
     check_surface_data(subject, findings);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 #include <optional>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "files/file_rights.h"
 #include "files/input_file.h"
@@ -24,7 +24,7 @@
 #include "files/unfinished_files.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Returns 0 or an errno.
@@ -347,4 +347,4 @@ Result<void> write_atomically(const std::string& path, std::span<const std::byte
     return file->commit();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

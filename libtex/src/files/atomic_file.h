@@ -20,13 +20,13 @@
 #include <span>
 #include <string>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct WriteOptions;
 
-// As in WriteOptions (container.h).
+// As in WriteOptions (file.h).
 struct AtomicFileOptions {
     bool sync = true;
     bool no_clobber = false;
@@ -62,8 +62,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// In one step: writes `bytes` to `path` as write_file() (container.h) describes. Errors: io, out_of_memory.
+// In one step: writes `bytes` to `path` as write_file() (file.h) describes. Errors: io, out_of_memory.
 Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
                               const AtomicFileOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::string beside(const std::string& path, const std::string& name) {
     const std::size_t slash = path.rfind('/');
@@ -19,4 +19,4 @@ Result<std::vector<std::byte>> read_at_most(const std::string& path, std::int64_
     return file->read_rest(most);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The path of a file that the file at `path` names by a relative path.
 std::string beside(const std::string& path, const std::string& name);
@@ -18,4 +18,4 @@ std::string beside(const std::string& path, const std::string& name);
 // Errors: those of InputFile::open() and read_rest(); unsupported (more than `most` bytes).
 Result<std::vector<std::byte>> read_at_most(const std::string& path, std::int64_t most);
 
-}  // namespace tex
+}  // namespace tex::inline v1

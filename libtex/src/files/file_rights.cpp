@@ -15,7 +15,7 @@
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kAcl = "system.posix_acl_access";
@@ -138,4 +138,4 @@ void keep_rights(int fd, int folder, const std::string& name, const struct stat&
     static_cast<void>(fchmod(fd, mode));  // if this fails, only its writer can read the file
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

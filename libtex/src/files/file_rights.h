@@ -9,7 +9,7 @@
 
 #include <sys/stat.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Gives the new file `fd` the owner, group, mode, POSIX ACL and user.* attributes of the file `name` in `folder`, whose
 // status is `old`, as far as this user may. Nobody ever gets more rights. What cannot be copied is left out, so the
@@ -21,4 +21,4 @@ void keep_rights(int fd, int folder, const std::string& name, const struct stat&
 // except the owner's are removed.
 mode_t mode_without_acl(mode_t mode, std::span<const std::byte> acl);
 
-}  // namespace tex
+}  // namespace tex::inline v1

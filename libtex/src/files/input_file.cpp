@@ -15,7 +15,7 @@
 #include "files/system_error.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // read(2) and pread(2) refuse or shorten larger counts.
@@ -226,4 +226,4 @@ Result<std::vector<std::byte>> read_whole_file(const std::string& path, const Re
     return file->read_rest(largest_file(options));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

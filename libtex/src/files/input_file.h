@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Owns a file descriptor; -1 means none.
 class Descriptor {
@@ -111,4 +111,4 @@ std::int64_t largest_file(const ReadOptions& options);
 // read_rest(largest_file(options)).
 Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options = {});
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A file of at most this size in bytes is assembled in memory and written at once: one system call for each level takes
@@ -63,4 +63,4 @@ Result<void> OutputFile::commit() {
     return file_->commit();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/atomic_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // When the file is opened. If many files are written at once (one for each level), they should not use many
 // descriptors, and FIFOs among them must be opened one after the other, in the order in which their reader opens them.
@@ -43,4 +43,4 @@ private:
     std::vector<std::byte> held_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

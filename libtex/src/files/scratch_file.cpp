@@ -11,7 +11,7 @@
 
 #include "files/system_error.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::string folder_of(const std::string& path) {
@@ -52,4 +52,4 @@ Result<std::vector<std::byte>> ScratchFile::read_at(std::uint64_t offset, std::s
     return bytes;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

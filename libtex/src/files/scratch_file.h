@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class ScratchFile {
 public:
@@ -34,4 +34,4 @@ private:
     std::string output_;  // for error messages
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cerrno>
 
-namespace tex {
+namespace tex::inline v1 {
 
 Error system_error(const std::string& file, int number, const char* doing) {
     const bool exhausted = number == ENOMEM || number == EMFILE || number == ENFILE;
@@ -14,4 +14,4 @@ Error system_error(const std::string& file, int number, const char* doing) {
             is_no_space(number) ? ErrorDetail::no_space : ErrorDetail::none};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

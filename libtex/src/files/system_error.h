@@ -7,9 +7,9 @@
 #include <cstring>
 #include <string>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The message for errno value `number`, as a clause: "no such file or directory". Thread-safe, the same in every
 // locale. (Inline, so that the commands can use it too: libtex exports only what its public headers declare.)
@@ -39,4 +39,4 @@ inline bool is_no_space(int number) { return number == ENOSPC || number == EDQUO
 // io. If `doing` is not empty, the reason begins with it: "cannot be renamed: permission denied".
 Error system_error(const std::string& file, int number, const char* doing = "");
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 
 #include "files/system_error.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Returns 0 or an errno.
@@ -105,4 +105,4 @@ Result<void> ThroughFile::write_held() {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

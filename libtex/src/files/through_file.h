@@ -17,11 +17,11 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The descriptor that "-", /dev/stdout, /dev/fd/N or /proc/self/fd/N names. It is written directly even if it refers to
 // a regular file, because the shell that opened the file keeps it open. (Inline, so that the commands can use it too.)
@@ -62,4 +62,4 @@ private:
     std::map<std::uint64_t, std::vector<std::byte>> held_;  // by offset
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // An element of a list that only grows, to the greatest number of files that existed at once. A thread that walks
 // through the list needs no lock.
@@ -98,4 +98,4 @@ void UnfinishedFile::remove_all() noexcept {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -20,7 +20,7 @@
 #include <csignal>
 #include <string>
 
-namespace tex {
+namespace tex::inline v1 {
 
 class NameSection {
 public:
@@ -47,7 +47,7 @@ public:
     // Removes the record: the file has been renamed or removed, or will be before the section ends.
     void remove(const NameSection& section);
 
-    // Implements remove_unfinished_files() (container.h).
+    // Implements remove_unfinished_files() (file.h).
     static void remove_all() noexcept;
 
 private:
@@ -56,4 +56,4 @@ private:
     Place* place_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 class BottomUpTarget final : public RowTarget {
@@ -50,4 +50,4 @@ std::unique_ptr<RowTarget> open_bottom_up(BottomUpFile file, WriteBytes write) {
     return std::make_unique<BottomUpTarget>(std::move(file), std::move(write));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "formats/row_target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct BottomUpFile {
     Format format;  // 8-bit unorm, of one, three or four channels
@@ -23,4 +23,4 @@ struct BottomUpFile {
 // Throws std::bad_alloc.
 std::unique_ptr<RowTarget> open_bottom_up(BottomUpFile file, WriteBytes write);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Keeps what has not been given and reads on.
 bool ByteRange::fill(std::size_t count) {
@@ -30,4 +30,4 @@ Error ends_early(const InputFile& file) {
     return {ErrorCode::bad_data, file.path(), "damaged: the file ends before its last row"};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class ByteRange {
 public:
@@ -50,4 +50,4 @@ private:
 // What is wrong with a picture whose file ends within its rows.
 [[nodiscard]] Error ends_early(const InputFile& file);
 
-}  // namespace tex
+}  // namespace tex::inline v1

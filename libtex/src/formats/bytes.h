@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline std::uint32_t load_u32(const std::byte* p) {
     return std::to_integer<std::uint32_t>(p[0]) | std::to_integer<std::uint32_t>(p[1]) << 8 |
@@ -56,4 +56,4 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
 #include "blocks/astc_decode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The swizzle of a texture whose only channel is alpha.
 inline constexpr Swizzle kAlphaAlone = {Component::zero, Component::zero, Component::zero, Component::other};
@@ -37,4 +37,4 @@ inline Swizzle likely_swizzle(Format format) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

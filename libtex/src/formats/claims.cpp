@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::string by(std::int64_t width, std::int64_t height) { return std::to_string(width) + "x" + std::to_string(height); }
@@ -49,4 +49,4 @@ std::vector<std::string> channel_names(int channels) {
     return {"R", "G", "B", "A"};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,11 +6,10 @@
 #include <cstdint>
 #include <string>
 
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Checks and returns the extent that a header claims. Errors: bad_data (a side below 1), unsupported (a side above
 // kMaxExtent, more texels than max_texels).
@@ -29,4 +28,4 @@ Image make_image(Extent extent, std::vector<std::string> names);
 // The first `channels` names of R, G, B, A; with one or two channels Y, or Y and A. Throws std::bad_alloc.
 std::vector<std::string> channel_names(int channels);
 
-}  // namespace tex
+}  // namespace tex::inline v1

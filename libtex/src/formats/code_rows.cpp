@@ -8,7 +8,7 @@
 
 #include "kernels/samples.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 template <class Code>
@@ -45,4 +45,4 @@ void CodeRows::store(const std::byte* rows, int first, int end, Image& image) co
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class CodeRows : public RowSource {
 public:
@@ -20,4 +20,4 @@ protected:
     void describe_codes(Extent extent, std::vector<std::string> names, int bits);
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

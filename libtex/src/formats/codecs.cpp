@@ -27,7 +27,7 @@
 #include "formats/reader/reader_rows.h"
 #include "formats/tga/tga.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 bool is_written(Format format) { return !is_bptc(format); }
@@ -181,4 +181,4 @@ const Codec& codec_for(const InputFile& file, const ReadOptions& options) {
     return named == std::end(kCodecs) ? by_head : *named;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -2,7 +2,7 @@
 // codecs.h: the table of file types, one row for each type.
 //
 // A new file type needs a folder beside this file and a row in codecs.cpp; if it is written, too, an enumerator with
-// its name and extensions in container.h. No other code depends on the type of a file.
+// its name and extensions in file.h. No other code depends on the type of a file.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 #include <span>
 #include <string_view>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
@@ -21,7 +21,7 @@
 #include "formats/stored_texture.h"
 #include "formats/texture_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct Codec {
     std::optional<Container> container = {};  // none: such files are only read
@@ -67,4 +67,4 @@ struct Codec {
 // The same for an open file, which may be of a type that has no magic: the options or its name then say what it is.
 [[nodiscard]] const Codec& codec_for(const InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

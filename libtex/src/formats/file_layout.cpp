@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Texel bytes are copied from memory unchanged, and the files are little-endian.
@@ -90,4 +90,4 @@ std::vector<std::byte> assemble(const Texture& texture, const FileLayout& layout
     return file;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

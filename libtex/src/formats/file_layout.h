@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // All of a texture except its bytes.
 struct TextureHead {
@@ -61,4 +61,4 @@ void rearrange_texels(Format format, Rearrange rearrange, const std::byte* sourc
 // The bytes of the whole file.
 [[nodiscard]] std::vector<std::byte> assemble(const Texture& texture, const FileLayout& layout);
 
-}  // namespace tex
+}  // namespace tex::inline v1

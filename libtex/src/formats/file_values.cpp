@@ -9,7 +9,7 @@
 
 #include "rows/channel_names.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // As TIFF numbers them.
@@ -97,4 +97,4 @@ std::unique_ptr<RowSource> with_values(std::unique_ptr<RowSource> rows, FileValu
     return std::make_unique<NumberRows>(std::move(rows));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

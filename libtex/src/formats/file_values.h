@@ -6,13 +6,13 @@
 
 #include <memory>
 
-#include <tex/image_io.h>
+#include <tex/file.h>
 
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The same rows with the values that are wanted. Call this before rows are stored. Throws std::bad_alloc.
 std::unique_ptr<RowSource> with_values(std::unique_ptr<RowSource> rows, FileValues values);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::string content_of(const LayerCount& count) {
@@ -36,4 +36,4 @@ Result<std::uint64_t> chosen_layer(const LayerCount& count, const std::string& n
                      (count.layers > 1 ? "; " + numbers_of(count) : "")};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

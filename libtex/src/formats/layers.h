@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <string>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // What a file holds: arrays of textures, or of cube maps with a picture for each face.
 struct LayerCount {
@@ -21,4 +21,4 @@ struct LayerCount {
 // there are. Errors: unsupported (several, and none is named), bad_option (there is no such layer).
 Result<std::uint64_t> chosen_layer(const LayerCount& count, const std::string& name, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

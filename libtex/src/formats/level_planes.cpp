@@ -14,7 +14,7 @@
 #include "rows/decode_rows.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr unsigned kReds = 0xF800, kGreens = 0x07E0, kBlues = 0x001F;  // of a 16-bit colour
@@ -121,4 +121,4 @@ Result<Image> decode_planes(const Texture& texture, const Level& level, const Pl
     return image;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,12 +5,10 @@
 
 #include <functional>
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // What must be decoded. A plane that need not be decoded has one row in memory, which all of its rows share (stride 0).
 // It must not be written to.
@@ -22,8 +20,8 @@ struct PlaneNeeds {
     bool share_constants = false;
 };
 
-// The values are those of decode() in unpack.h. Errors: out_of_memory, cancelled.
+// The values are those of decode() in pack.h. Errors: out_of_memory, cancelled.
 Result<Image> decode_planes(const Texture& texture, const Level& level, const PlaneNeeds& needs,
                             const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

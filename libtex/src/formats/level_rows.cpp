@@ -14,7 +14,7 @@
 #include "kernels/decode.h"
 #include "rows/decode_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<void> read_bytes(const InputFile& file, std::uint64_t offset, std::span<std::byte> bytes) {
@@ -134,4 +134,4 @@ std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_pt
     return std::make_unique<LevelRows>(file, std::move(texture), k);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "formats/row_source.h"
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Reads bytes of a file, which must outlive the function. May throw std::bad_alloc. Errors: io, bad_data.
 [[nodiscard]] FetchBytes fetch_from(const InputFile& file);
@@ -19,4 +19,4 @@ namespace tex {
 std::unique_ptr<RowSource> open_level_rows(const InputFile& file, std::shared_ptr<const StoredTexture> texture,
                                            std::size_t k);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "formats/bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr DdsPixelFormat coded(std::uint32_t code) { return {kDdpfFourCc, code, 0, {}}; }
@@ -94,4 +94,4 @@ std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, st
     return std::nullopt;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "formats/dds/dds_format.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The numbers of one registry for a format; 0 if there is none. All of them describe the same bytes.
 struct FormatNumbers {
@@ -49,4 +49,4 @@ inline constexpr std::uint32_t kKhrBc7 = 134;
 inline constexpr std::uint32_t kKhrEtc2 = 161;  // including EAC
 inline constexpr std::uint32_t kKhrAstc = 162;
 
-}  // namespace tex
+}  // namespace tex::inline v1

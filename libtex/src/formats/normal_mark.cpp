@@ -8,11 +8,11 @@
 #include <optional>
 #include <system_error>
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "formats/channels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::string_view kUp = "+y";
@@ -137,4 +137,4 @@ std::string_view mark_in_description(std::string_view description) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

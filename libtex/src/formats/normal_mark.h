@@ -18,12 +18,12 @@
 #include <string>
 #include <string_view>
 
-#include <tex/height_field.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/height.h>
 
 #include "formats/file_layout.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kNormalKey = "libtex.normal";
 inline constexpr std::size_t kLongestNormalMark = 9;  // "dxt5nm +y"
@@ -45,4 +45,4 @@ bool apply_found_mark(std::string_view mark, Texture& texture);
 [[nodiscard]] std::string description_of(std::string_view mark);
 [[nodiscard]] std::string_view mark_in_description(std::string_view description);
 
-}  // namespace tex
+}  // namespace tex::inline v1

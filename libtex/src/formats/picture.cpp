@@ -13,7 +13,7 @@
 #include "formats/normal_mark.h"
 #include "rows/channel_names.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The smallest sample type of a Format that holds the samples of a picture unchanged.
@@ -107,4 +107,4 @@ void store_texels(const Image& image, int rows, Format format, const std::vector
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

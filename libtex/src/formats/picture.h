@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // What a picture becomes: each plane is a channel of a texture, in the smallest format that holds the values unchanged
 // (8 bits if samples have 1, 2, 4 or 8 bits, otherwise 16; half; float). If there is a plane R, the channels are R, G,
@@ -35,4 +34,4 @@ void store_texels(const Image& image, int rows, Format format, const std::vector
 // Rounds `count` values of a picture to values that a 16-bit texel can hold.
 void round_to_texels(const float* values, int count, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

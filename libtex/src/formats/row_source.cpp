@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "blocks/extent.h"
 #include "formats/claims.h"
@@ -14,7 +14,7 @@
 #include "formats/normal_mark.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::string orientation_text(int orientation) {
     return "the picture was turned or mirrored, as its orientation (" + std::to_string(orientation) + ") says";
@@ -98,4 +98,4 @@ Result<Image> read_image(InputFile& file, const ReadOptions& options) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

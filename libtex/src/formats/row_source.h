@@ -14,16 +14,15 @@
 #include <utility>
 #include <vector>
 
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "blocks/extent.h"
 #include "files/input_file.h"
 #include "formats/stored_samples.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // What a picture's orientation, which is not 1, means for it, as a sentence.
 std::string orientation_text(int orientation);
@@ -156,4 +155,4 @@ Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows);
 // As read_image(path), for an open file. Errors name the file.
 Result<Image> read_image(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

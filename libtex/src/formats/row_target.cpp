@@ -8,7 +8,7 @@
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Encodes pieces of work on all threads, some for each at a time.
@@ -71,7 +71,7 @@ Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& textu
     const Result<std::unique_ptr<RowTarget>> target = open(head_of(texture), write);
     if (!target) return target.error();
     const std::size_t levels = all_levels ? texture.levels.size() : 1;
-    Workers workers(**target, {execution.threads, {}});
+    Workers workers(**target, execution.quiet());
     for (std::size_t k = 0; k < levels; ++k) {
         const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k], workers);
         if (!put) return put.error();
@@ -81,4 +81,4 @@ Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& textu
     return file;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

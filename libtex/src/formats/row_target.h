@@ -11,13 +11,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/file_layout.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Writes bytes to a file, each byte once, in any order. Errors: io, out_of_memory.
 using WriteBytes = std::function<Result<void>(std::uint64_t offset, std::span<const std::byte> bytes)>;
@@ -73,4 +72,4 @@ using OpenTarget = Result<std::unique_ptr<RowTarget>> (*)(const TextureHead& hea
 Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& texture, bool all_levels,
                                            const Execution& execution = {1, {}});
 
-}  // namespace tex
+}  // namespace tex::inline v1

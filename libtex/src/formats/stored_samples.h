@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The reader process hands over integers as they are stored; RowSource::store() makes them fractions of the largest
 // one.
@@ -18,4 +18,4 @@ struct StoredSamples {
     double offset = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "formats/file_layout.h"
 #include "formats/ktx2/level_inflater.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 namespace {
 
@@ -85,4 +85,4 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
     return texture;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/dds/fields.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Reads bytes of a file. Precondition: the file has them. Errors: io.
 using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t offset, std::size_t count)>;
@@ -61,4 +61,4 @@ using ParseTexture = Result<StoredTexture> (*)(const FetchBytes& fetch, std::siz
 [[nodiscard]] Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::size_t size,
                                            const std::string& name, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tex/container.h>
+#include <tex/file.h>
 
 #include "formats/codecs.h"
 #include "formats/level_rows.h"
@@ -13,7 +13,7 @@
 #include "formats/picture.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A picture as a texture of one level, read by rows.
@@ -103,7 +103,7 @@ Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
             if (const Result<void> fits = check_size(file, codec, options); !fits) return fits.error();
             const Result<std::vector<std::byte>> bytes = file.read_rest(largest_file(options));
             if (!bytes) return bytes.error();
-            return decode_file(bytes->data(), bytes->size(), file.path(), options);
+            return load_texture(codec.parse, bytes->data(), bytes->size(), file.path(), options);
         }
         if (codec.open_levels != nullptr) {
             Result<Texture> texture = read_all(codec.open_levels(file, options));
@@ -120,4 +120,4 @@ Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& option
     return guarded([&]() -> Result<TextureRows> { return open_any(file, codec_for(file, options), options); });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,14 +8,14 @@
 #include <numeric>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // As read_texture(path), for an open file. Errors name the file.
 Result<Texture> read_texture(InputFile& file, const ReadOptions& options);
@@ -41,4 +41,4 @@ Result<Texture> read_all(Result<TextureRows> rows);
 // Opens the texture in `file`, which must outlive the rows. Errors: those of read_texture() that the header reveals.
 Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::string in_lower_case(std::string_view text) {
     std::string lower(text);
@@ -46,4 +46,4 @@ float float_of(double value) {
     return value < 0.0 ? -most : most;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -27,4 +27,4 @@ std::optional<long long> whole_number_in(std::string_view text);
 // The nearest float; infinite where there is none.
 float float_of(double value);
 
-}  // namespace tex
+}  // namespace tex::inline v1

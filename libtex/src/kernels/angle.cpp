@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -51,11 +51,11 @@ void angle_row_target(const VectorRow& a, const VectorRow& b, int count, float* 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(angle_row_target);
 
@@ -63,5 +63,5 @@ void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees
     HWY_DYNAMIC_DISPATCH(angle_row_target)(a, b, count, degrees);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

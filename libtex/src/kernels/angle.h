@@ -5,10 +5,10 @@
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // degrees[i] = 2 asin(min(1, |a[i] - b[i]| / 2)), in degrees, for `count` texels. Whole vectors
 // are read and written past the last texel.
 void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees);
 
-}  // namespace tex
+}  // namespace tex::inline v1

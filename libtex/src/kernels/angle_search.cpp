@@ -16,7 +16,7 @@
 
 #ifndef TEX_ANGLE_SEARCH_ONCE
 #define TEX_ANGLE_SEARCH_ONCE
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 enum class Coding { bc4_unorm, bc4_snorm, green };
@@ -96,11 +96,11 @@ bool allowed(const Ends& before, const Ends& after) {
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -232,11 +232,11 @@ void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(improve_angles);
 
@@ -244,5 +244,5 @@ void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte
     HWY_DYNAMIC_DISPATCH(improve_angles)(row, encoding, reach, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

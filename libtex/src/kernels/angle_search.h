@@ -20,11 +20,11 @@
 
 #include "kernels/encode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Improves the blocks of a row that were written by encode_dxt5nm() or a similar function. Steps change endpoints by up
 // to `reach` codes, at most kAngleReach.
 inline constexpr int kAngleReach = 3;
 void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks);
 
-}  // namespace tex
+}  // namespace tex::inline v1

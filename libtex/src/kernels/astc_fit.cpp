@@ -10,7 +10,7 @@
 #include "kernels/astc_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // Stores a line as a plane: of one channel, or of both.
@@ -57,11 +57,11 @@ void FitAstc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& grou
 int AstcLanes() { return static_cast<int>(hn::Lanes(FloatTag())); }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(FitAstc);
 HWY_EXPORT(AstcLanes);
@@ -72,5 +72,5 @@ void fit_astc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gro
     HWY_DYNAMIC_DISPATCH(FitAstc)(plan, steps, group, fits);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

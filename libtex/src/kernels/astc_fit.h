@@ -9,7 +9,7 @@
 
 #include "blocks/astc_plan.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The most blocks side by side.
 inline constexpr int kAstcLanes = 16;
@@ -42,4 +42,4 @@ struct AstcSteps {
 
 void fit_astc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -331,11 +331,11 @@ void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int parti
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(GuessAstc);
 HWY_EXPORT(GuessAstcPatterns);
@@ -354,5 +354,5 @@ void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int par
     HWY_DYNAMIC_DISPATCH(GuessAstcPatterns)(guide, group, partitions, patterns, guesses);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -12,7 +12,7 @@
 #include "kernels/astc_fit.h"
 #include "kernels/astc_guide.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kAstcMostGuesses = 64;
 
@@ -36,4 +36,4 @@ void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
 void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
                          AstcGuesses& guesses);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "blocks/astc_ise.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // What measured errors of rounded weights are of those of a uniform distribution between evenly spaced levels, by
@@ -121,4 +121,4 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
     return guide;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "blocks/astc_plan.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Plans that blocks of a size may use, in an order that the guesses need.
 struct AstcGuide {
@@ -40,4 +40,4 @@ struct AstcReach {
 };
 [[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "kernels/astc_line-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // What a partition's texels are, as 0 or 1.
@@ -165,7 +165,7 @@ void AstcLine<kChannels, kPartitions>::try_starts(int p, AstcFloat best[2][2]) c
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif  // TEX_KERNELS_ASTC_STARTS_INL_H

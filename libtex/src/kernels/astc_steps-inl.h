@@ -11,7 +11,7 @@
 #include "kernels/astc_starts-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // The least squared distance of endpoints (of 0 to 255) that counts as one.
@@ -272,7 +272,7 @@ bool AstcLine<kChannels, kPartitions>::polish() {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif  // TEX_KERNELS_ASTC_STEPS_INL_H

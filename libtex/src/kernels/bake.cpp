@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -152,11 +152,11 @@ int CountBelow(const float* values, float limit, int count) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(AreFinite);
 HWY_EXPORT(LimitHeights);
@@ -205,5 +205,5 @@ int count_below(const float* values, float limit, int count) {
     return HWY_DYNAMIC_DISPATCH(CountBelow)(values, limit, count);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -9,7 +9,7 @@
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Heights are limited to this after they are scaled. Beyond it, sums of differences could become infinite, and infinity
 // minus infinity is NaN.
@@ -66,4 +66,4 @@ void widen_slope_bounds(const float* x, const float* y, const float* z, int coun
 // The number of texels in a row whose value is less than `limit`.
 int count_below(const float* values, float limit, int count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

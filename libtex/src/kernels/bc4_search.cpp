@@ -14,7 +14,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -234,11 +234,11 @@ void search_bc4_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, i
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(search_bc4_blocks);
 
@@ -247,5 +247,5 @@ void search_bc4_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, i
     HWY_DYNAMIC_DISPATCH(search_bc4_blocks)(blocks, bounds, count, codes, endpoints);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -37,9 +37,9 @@
 #include "blocks/bc4.h"
 #include "kernels/clusters.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 void search_bc4_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, int count, Bc4Codes codes,
                        Bc4Endpoints* endpoints);
 
-}  // namespace tex
+}  // namespace tex::inline v1

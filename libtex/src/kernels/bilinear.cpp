@@ -12,7 +12,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -138,11 +138,11 @@ void BilinearRow(const float* upper, const float* lower, const TapRow& columns, 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(Taps);
 HWY_EXPORT(FindRuns);
@@ -161,5 +161,5 @@ void bilinear_row(const float* upper, const float* lower, const TapRow& columns,
     HWY_DYNAMIC_DISPATCH(BilinearRow)(upper, lower, columns, runs, weight, count, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Along one axis of texels, sample i lies between texels first[i] and second[i], at weight[i] from the first (0) to the
 // second (1).
@@ -33,4 +33,4 @@ void find_runs(const TapRow& taps, int count, int readable, std::int32_t* start)
 void bilinear_row(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight,
                   int count, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

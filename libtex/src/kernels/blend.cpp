@@ -12,7 +12,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -119,11 +119,11 @@ void MixRow(float* a, const float* b, float t, int count) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(BlendRow);
 HWY_EXPORT(RotateRow);
@@ -139,5 +139,5 @@ void rotate_row(NormalRow row, float cosine, float sine, int count) {
 
 void mix_row(float* a, const float* b, float t, int count) { HWY_DYNAMIC_DISPATCH(MixRow)(a, b, t, count); }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

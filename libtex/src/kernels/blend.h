@@ -3,11 +3,11 @@
 
 #pragma once
 
-#include <tex/blend_options.h>
+#include <tex/blend.h>
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Blends `detail` on `base`, in place: see BlendMode. If `weight` is given, with a value for each texel, the result is
 // normalize(lerp(base, blended, weight)). A null pointer means 1.
@@ -19,4 +19,4 @@ void rotate_row(NormalRow row, float cosine, float sine, int count);
 // a = a (1 - t) + b t for one component.
 void mix_row(float* a, const float* b, float t, int count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

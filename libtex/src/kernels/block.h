@@ -8,7 +8,7 @@
 
 #include "blocks/texels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // In codes relative to `base`.
 struct Block {
@@ -58,4 +58,4 @@ inline Block measure(const BlockTexels& texels) {
     return block;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

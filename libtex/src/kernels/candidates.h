@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A pair: the greater endpoint lies `distance` above the lower one. Among equals, `kind` 0 is preferred to 1.
 struct Candidate {
@@ -81,4 +81,4 @@ private:
     Candidate list_[kCapacity];
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -106,11 +106,11 @@ void cluster_bounds(const BlockTexels* blocks, int count, ClusterBounds* out) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(cluster_bounds);
 
@@ -118,5 +118,5 @@ void cluster_bounds(const BlockTexels* blocks, int count, ClusterBounds* bounds)
     HWY_DYNAMIC_DISPATCH(cluster_bounds)(blocks, count, bounds);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -5,7 +5,7 @@
 
 #include "blocks/texels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kMaxClusters = 8;
 
@@ -26,4 +26,4 @@ struct ClusterBounds {
 // Blocks with texels outside the level get bounds of 0.
 void cluster_bounds(const BlockTexels* blocks, int count, ClusterBounds* bounds);
 
-}  // namespace tex
+}  // namespace tex::inline v1

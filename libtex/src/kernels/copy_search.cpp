@@ -10,7 +10,7 @@
 
 #ifndef TEX_COPY_SEARCH_ONCE
 #define TEX_COPY_SEARCH_ONCE
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A product of two directions, computed by MulFixedPoint15, is a cosine in units of 1/kCosine. Rounding changes it by
@@ -127,7 +127,7 @@ void add_block_at(const CopySearch& search, int at, const CopyBits& bits, FoundC
 }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif
 
 #undef HWY_TARGET_INCLUDE
@@ -136,7 +136,7 @@ void add_block_at(const CopySearch& search, int at, const CopyBits& bits, FoundC
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -338,11 +338,11 @@ void chord_sums_target(const ChordTexels& texels, const float* values, int strid
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(find_copies_target);
 HWY_EXPORT(block_chords_target);
@@ -454,5 +454,5 @@ void chord_sums(const ChordTexels& texels, const float* values, int stride, int 
     HWY_DYNAMIC_DISPATCH(chord_sums_target)(texels, values, stride, count, sums);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

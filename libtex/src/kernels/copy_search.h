@@ -10,7 +10,7 @@
 
 #include "blocks/half_block.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The shape (blocks/half_block.h) of a half that may be copied.
 struct CopyHalf {
@@ -142,4 +142,4 @@ struct ChordTexels {
 // vector past the last candidate.
 void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums);
 
-}  // namespace tex
+}  // namespace tex::inline v1

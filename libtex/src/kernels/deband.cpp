@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -175,11 +175,11 @@ void GreatestOf(float factor, float factor_of_other, const float* other, int cou
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(CodesOfHeights);
 HWY_EXPORT(HeightsOfCodes);
@@ -249,5 +249,5 @@ void greatest_of(float factor, float factor_of_other, const float* other, int co
     HWY_DYNAMIC_DISPATCH(GreatestOf)(factor, factor_of_other, other, count, row);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

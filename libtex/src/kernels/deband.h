@@ -6,7 +6,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 // No height is below `least` or above `greatest`, in steps. Where there is a code, heights are also at most half a step
 // from it.
@@ -67,4 +67,4 @@ void weights_of_energy(float noise, float significant, float factor, int count, 
 void least_of(const float* other, int count, float* row);
 void greatest_of(float factor, float factor_of_other, const float* other, int count, float* row);
 
-}  // namespace tex
+}  // namespace tex::inline v1

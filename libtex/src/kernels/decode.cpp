@@ -21,7 +21,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -285,11 +285,11 @@ void DecodeBlocks(Format format, const std::byte* blocks, int count, const Chann
 #endif
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(DecodeBlocks);
 
@@ -307,5 +307,5 @@ void decode_blocks(Format format, const std::byte* blocks, int count, const Chan
     HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, count, rows, stride);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -18,7 +18,7 @@
 
 #ifndef TEX_EAC_FIT_ONCE
 #define TEX_EAC_FIT_ONCE
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A table, and the width of its palette in units of 2 s that is matched to the range of the block.
@@ -33,11 +33,11 @@ constexpr Trial kTrials[] = {{13, 5}, {9, 19},  {2, 24}, {15, 17}, {11, 19},
 constexpr int odd(int table, int k) { return 2 * kEacModifiers[table][4 + k] + 1; }
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -174,11 +174,11 @@ void FitEacBlocks(const FitRows& x, const FitRows& y, int count, EacCodes codes,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(FitEacBlocks);
 
@@ -186,5 +186,5 @@ void fit_eac_blocks(const FitRows& x, const FitRows& y, int count, EacCodes code
     HWY_DYNAMIC_DISPATCH(FitEacBlocks)(x, y, count, codes, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -13,9 +13,9 @@
 #include "blocks/eac.h"
 #include "kernels/fit.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Fits `count` blocks that lie entirely in the rows, and writes 16 bytes for each: EAC RG11 from x and y.
 void fit_eac_blocks(const FitRows& x, const FitRows& y, int count, EacCodes codes, std::byte* blocks);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,7 +18,7 @@
 #include "kernels/eac_gains-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 using Ints = hn::Rebind<std::int32_t, Floats>;
@@ -319,11 +319,11 @@ void EncodeEacBlocks(const BlockTexels* texels, const ClusterBounds* bounds, int
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(EncodeEacBlocks);
 
@@ -332,5 +332,5 @@ void encode_eac_blocks(const BlockTexels* texels, const ClusterBounds* bounds, i
     HWY_DYNAMIC_DISPATCH(EncodeEacBlocks)(texels, bounds, count, codes, effort, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

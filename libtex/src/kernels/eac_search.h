@@ -32,16 +32,16 @@
 
 #pragma once
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "blocks/eac.h"
 #include "kernels/clusters.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Encodes `count` blocks into the first 8 of each 16 bytes. best needs the bounds and finds the least squared error of
 // all palettes; normal, the best of the palettes near the middle of the block's range.
 void encode_eac_blocks(const BlockTexels* texels, const ClusterBounds* bounds, int count, EacCodes codes, Effort effort,
                        std::byte* blocks);
 
-}  // namespace tex
+}  // namespace tex::inline v1

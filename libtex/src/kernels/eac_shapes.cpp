@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct Windows {
@@ -44,4 +44,4 @@ const EacWindow& eac_window(int table, int count, int length) {
     return windows.at[table][count][std::min(length, kLongestWindow)];
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "blocks/eac.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A table in ascending order: entries k and k + 1 are gaps[k] apart, and the threshold between them lies at sums[k]
 // / 2.
@@ -50,4 +50,4 @@ struct EacWindow {
 // `count` is from 1 to 7, length from 0 on.
 [[nodiscard]] const EacWindow& eac_window(int table, int count, int length);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -34,11 +34,11 @@ void EacUnits(const float* row, int count, bool negate, int top, std::int32_t* u
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(EacUnits);
 
@@ -46,5 +46,5 @@ void eac_units(const float* row, int count, bool negate, int top, std::int32_t* 
     HWY_DYNAMIC_DISPATCH(EacUnits)(row, count, negate, top, units);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Converts `count` components, or their negatives, as to_eac_units() in blocks/eac.h does. Reads and writes no more.
 void eac_units(const float* row, int count, bool negate, int top, std::int32_t* units);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include "kernels/fit.h"
 #include "kernels/green_search.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The number of blocks that are encoded together.
@@ -166,4 +166,4 @@ void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* b
         improve_angles(row, options.encoding, kAngleReach, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

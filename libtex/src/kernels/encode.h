@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "blocks/extent.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The texel rows of a row of blocks, from the top, padded like the rows of a Plane. If the level ends within the
 // blocks, `height` is the number of its rows here (1 to kBlockEdge); the other pointers repeat the last row.
@@ -52,4 +52,4 @@ void encode_eac_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 // Uses all options that concern blocks: encoding (one in blocks), effort and, except in EAC, metric.
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include "kernels/astc_guess.h"
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // More than any error.
@@ -410,4 +410,4 @@ void encode_astc(Format format, Effort effort, const float* xy, Extent extent, s
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,9 +9,9 @@
 #include <cstddef>
 
 #include <tex/format.h>
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether encode_astc() writes it: sizes up to 8x8.
 [[nodiscard]] bool encodes_astc(Format format);
@@ -30,4 +30,4 @@ void prepare_astc(Format format, Effort effort);
 // So many rows of blocks are encoded together best.
 [[nodiscard]] int astc_rows_at_once(Format format, int width);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "kernels/eac_units.h"
 #include "kernels/encode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The number of blocks that are encoded together.
@@ -79,4 +79,4 @@ void encode_eac_snorm(const BlockRow& row, Effort effort, std::byte* blocks) {
     encode_eac(row, kEacSnorm, effort, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

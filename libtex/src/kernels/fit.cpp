@@ -21,7 +21,7 @@
 #include "kernels/fit_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // For blocks of one value (to half a code): sets the endpoints that come nearest to it.
@@ -232,11 +232,11 @@ bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes code
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(fit_dxt5nm_blocks);
 HWY_EXPORT(fit_bc5_blocks);
@@ -249,5 +249,5 @@ bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes code
     return HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -44,11 +44,11 @@
 
 #include <cstddef>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "blocks/bc4.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The rows of texels of one channel (components in [-1, 1], clamped).
 struct FitRows {
@@ -65,4 +65,4 @@ struct FitRows {
 [[nodiscard]] bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort,
                                   std::byte* blocks);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -20,7 +20,7 @@
 #include "kernels/fit_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 class GreenFitter : public Fitter<Greens> {
@@ -116,7 +116,7 @@ private:
 };
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif

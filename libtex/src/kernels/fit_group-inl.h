@@ -20,7 +20,7 @@
 #include "kernels/fit.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -292,7 +292,7 @@ HWY_INLINE void for_each_group(const FitRows& x, const FitRows& y, int count, st
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif

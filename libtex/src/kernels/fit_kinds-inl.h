@@ -15,7 +15,7 @@
 #include "kernels/fit_group-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 HWY_INLINE F clamped(F value, float most) { return hn::Min(hn::Max(value, hn::Zero(Floats())), constant(most)); }
@@ -115,7 +115,7 @@ HWY_INLINE Ramp make_ramp(const F (&a)[kParts], const F (&b)[kParts], const F (&
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif

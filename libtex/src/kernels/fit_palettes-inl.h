@@ -19,7 +19,7 @@
 #include "kernels/fit_steps-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // Set if the first `texels` of a block lie on a grid that divides its range into kSpan spacings, within the rounding of
@@ -119,7 +119,7 @@ HWY_INLINE void offer_green_palettes(const Group& group, W among, Choice& choice
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif

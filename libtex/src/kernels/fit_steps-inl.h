@@ -19,7 +19,7 @@
 #include "kernels/fit_kinds-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // Sums over the indices k and the values v of the texels.
@@ -296,7 +296,7 @@ protected:
 };
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif

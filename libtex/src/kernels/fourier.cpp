@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -206,11 +206,11 @@ void DivideSpectrum(const SpectrumRow& row, int count, float* data) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(RunFourierStage);
 HWY_EXPORT(MultiplyGroups);
@@ -243,5 +243,5 @@ void divide_spectrum(const SpectrumRow& row, int count, float* data) {
     HWY_DYNAMIC_DISPATCH(DivideSpectrum)(row, count, data);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -8,7 +8,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kGroup = 16;
 
@@ -57,4 +57,4 @@ struct SpectrumRow {
 };
 void divide_spectrum(const SpectrumRow& row, int count, float* data);
 
-}  // namespace tex
+}  // namespace tex::inline v1

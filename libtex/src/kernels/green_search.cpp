@@ -16,7 +16,7 @@
 
 #ifndef TEX_GREEN_SEARCH_ONCE
 #define TEX_GREEN_SEARCH_ONCE
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct ExactError {
@@ -27,11 +27,11 @@ struct ExactError {
 using GreenCandidates = Candidates<ExactError>;
 
 }  // namespace
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -164,11 +164,11 @@ void search_green_blocks(const BlockTexels* blocks, const ClusterBounds* bounds,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(search_green_blocks);
 
@@ -176,5 +176,5 @@ void search_green_blocks(const BlockTexels* blocks, const ClusterBounds* bounds,
     HWY_DYNAMIC_DISPATCH(search_green_blocks)(blocks, bounds, count, endpoints);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -9,8 +9,8 @@
 #include "blocks/bc1.h"
 #include "kernels/clusters.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 void search_green_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, int count, GreenEndpoints* endpoints);
 
-}  // namespace tex
+}  // namespace tex::inline v1

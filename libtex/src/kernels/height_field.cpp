@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -109,11 +109,11 @@ void SmoothColumn(const float* const* rows, const float* smoothing, int radius, 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(LumaRow);
 HWY_EXPORT(AverageRow);
@@ -145,5 +145,5 @@ void smooth_column(const float* const* rows, const float* smoothing, int radius,
     HWY_DYNAMIC_DISPATCH(SmoothColumn)(rows, smoothing, radius, count, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

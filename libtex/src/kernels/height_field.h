@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A row of colours.
 struct ColorRow {
@@ -39,4 +39,4 @@ void smooth_row(const float* row, const float* smoothing, int radius, int count,
 // The same down the columns, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one.
 void smooth_column(const float* const* rows, const float* smoothing, int radius, int count, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -116,11 +116,11 @@ void AddLevelRow(const LevelRow& row, int count, LevelSums& sums) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(AddLevelRow);
 
@@ -136,5 +136,5 @@ void LevelSums::add(const LevelSums& o) {
     xx += o.xx, xy += o.xy, yy += o.yy, xr += o.xr, yr += o.yr, xs += o.xs, ys += o.ys;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

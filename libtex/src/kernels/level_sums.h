@@ -7,7 +7,7 @@
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // s is the stored vector, a the average of the base level, r the normalised average. Squares and products are sums over
 // x and y.
@@ -39,4 +39,4 @@ struct LevelRow {
 // lanes of floats for each 256 texels.
 void add_level_row(const LevelRow& row, int count, LevelSums& sums);
 
-}  // namespace tex
+}  // namespace tex::inline v1

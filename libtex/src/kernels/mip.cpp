@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -134,11 +134,11 @@ void FinishSlopes(float* x, float* y, float* z, int count, float fade) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(FilterRows);
 HWY_EXPORT(SplitRow);
@@ -182,5 +182,5 @@ void finish_slopes(float* x, float* y, float* z, int count, float fade) {
     HWY_DYNAMIC_DISPATCH(FinishSlopes)(x, y, z, count, fade);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

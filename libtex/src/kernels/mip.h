@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // out[i] = weights[0] rows[0][i] + weights[1] rows[1][i] + ..., summed in this order. taps >= 1.
 void filter_rows(const float* const* rows, const float* weights, int taps, int count, float* out);
@@ -39,4 +39,4 @@ void finish_vectors(float* x, float* y, float* z, int count, float fade, float l
 // The same, from averaged slopes p = x / z in x and q = y / z in y. z is only written.
 void finish_slopes(float* x, float* y, float* z, int count, float fade);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,7 +3,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Rows may be read and written up to a whole vector (64 bytes) past their last texel. VectorRow is only read:
 struct VectorRow {
@@ -20,4 +20,4 @@ struct NormalRow {
     operator VectorRow() const { return {x, y, z}; }
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

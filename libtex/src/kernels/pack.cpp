@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -61,11 +61,11 @@ void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(pack_unorm8);
 HWY_EXPORT(pack_unorm16);
@@ -78,5 +78,5 @@ void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16
     HWY_DYNAMIC_DISPATCH(pack_unorm16)(channels, count, width, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // One stored channel of a row: `values` are components in [-1, 1], or null for a channel that is constantly 1. A
 // negated channel stores -values. Other data are in [0, 1].
@@ -28,4 +28,4 @@ inline constexpr int kPackSlack = 16;
 void pack_unorm8(const PackChannel* channels, int count, int width, std::uint8_t* out);
 void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16_t* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "kernels/png_predict-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -130,11 +130,11 @@ void SwapSampleBytes(std::uint8_t* samples, std::size_t count) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(FilterPngRow);
 HWY_EXPORT(SwapSampleBytes);
@@ -148,5 +148,5 @@ void swap_sample_bytes(std::uint8_t* samples, std::size_t count) {
     HWY_DYNAMIC_DISPATCH(SwapSampleBytes)(samples, count);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Writes the number of a filter and the `count` filtered bytes of a row to `out`. The filter is the one whose
 // differences, as signed bytes, have the smallest sum of magnitudes, and the first of several: the specification's
@@ -18,4 +18,4 @@ void filter_png_row(const std::uint8_t* row, const std::uint8_t* above, std::siz
 // Exchanges the two bytes of each of `count` samples.
 void swap_sample_bytes(std::uint8_t* samples, std::size_t count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 // The neighbours of a byte: to the left, above, and above that to the left.
@@ -70,7 +70,7 @@ HWY_INLINE int PngPredictOne(std::size_t filter, int left, int above, int corner
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif  // once for each target

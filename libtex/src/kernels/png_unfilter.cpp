@@ -17,7 +17,7 @@
 #include "kernels/png_predict-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -164,11 +164,11 @@ void UnfilterPngRows(std::uint8_t* above, std::size_t stride, std::size_t count,
 #endif
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(UnfilterPngRows);
 
@@ -177,5 +177,5 @@ void unfilter_png_rows(std::uint8_t* above, std::size_t stride, std::size_t coun
     HWY_DYNAMIC_DISPATCH(UnfilterPngRows)(above, stride, count, step, rows, filters);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

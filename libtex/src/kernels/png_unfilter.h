@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The most rows that are unfiltered together, and the fewest bytes between the rows in memory: the first 192 of them
 // are scratch, the last 128 are zeros.
@@ -24,4 +24,4 @@ inline constexpr std::size_t kPngZeros = 128;
 void unfilter_png_rows(std::uint8_t* above, std::size_t stride, std::size_t count, std::size_t step, int rows,
                        const std::uint8_t* filters);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -77,11 +77,11 @@ void RoughnessOfAverages(RoughnessModel model, const float* x, const float* y, c
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(CleanRoughness);
 HWY_EXPORT(RoughnessOfAlpha2);
@@ -100,5 +100,5 @@ void roughness_of_averages(RoughnessModel model, const float* x, const float* y,
     HWY_DYNAMIC_DISPATCH(RoughnessOfAverages)(model, x, y, z, alpha2, count, roughness);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -88,11 +88,11 @@ void DecodeSamples(SampleKind sample, int bits, const std::byte* first, std::siz
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(DecodeSamples);
 
@@ -100,5 +100,5 @@ void decode_samples(SampleKind sample, int bits, const std::byte* first, std::si
     HWY_DYNAMIC_DISPATCH(DecodeSamples)(sample, bits, first, step, count, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

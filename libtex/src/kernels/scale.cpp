@@ -12,7 +12,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -32,11 +32,11 @@ void ScaleRow(const VectorRow& in, float scale, ScaleMode mode, int count, const
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(ScaleRow);
 
@@ -44,5 +44,5 @@ void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, cons
     HWY_DYNAMIC_DISPATCH(ScaleRow)(in, scale, mode, count, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

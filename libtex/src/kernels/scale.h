@@ -3,14 +3,14 @@
 
 #pragma once
 
-#include <tex/normal_map.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Scales `count` normals, which may be those of `out`: see scale() in scale.h. In ScaleMode::slope, vectors need not
 // have unit length; a scale of 1 normalises them. Rows are padded to whole vectors.
 void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

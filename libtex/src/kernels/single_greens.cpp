@@ -6,7 +6,7 @@
 
 #include "blocks/bc1.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kThirds = kMostThirds + 1;
@@ -63,4 +63,4 @@ const SingleGreen& single_green_above(int third) { return all().above[third]; }
 const std::int32_t* single_greens_below() { return near().below; }
 const std::int32_t* single_greens_above() { return near().above; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

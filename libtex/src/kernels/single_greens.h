@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A value in thirds of a code, and the nearest endpoints (6 bits) of which it is one third, two thirds or an end; if
 // several are equally near, the greatest ones.
@@ -27,4 +27,4 @@ inline constexpr int kMostThirds = 3 * 255;
 const std::int32_t* single_greens_below();
 const std::int32_t* single_greens_above();
 
-}  // namespace tex
+}  // namespace tex::inline v1

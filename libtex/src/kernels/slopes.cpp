@@ -15,7 +15,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -114,11 +114,11 @@ void ShiftAndScale(float offset, float factor, int count, float* values) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(SlopesOfNormals);
 HWY_EXPORT(ExcessSlopes);
@@ -157,5 +157,5 @@ void shift_and_scale(float offset, float factor, int count, float* values) {
     HWY_DYNAMIC_DISPATCH(ShiftAndScale)(offset, factor, count, values);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -7,7 +7,7 @@
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // p[i] = -x[i] / z[i] and q[i] = -y[i] / z[i], limited to +-kMaxSlope (kernels/bake.h). Both are 0 if z[i] is below
 // `least_z` > 0 or a component is NaN or infinite. Returns the number of such texels.
@@ -32,4 +32,4 @@ void weighted_sum(const float* a, float a_factor, const float* b, float b_factor
 // values[i] = (values[i] - offset) factor.
 void shift_and_scale(float offset, float factor, int count, float* values);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -268,11 +268,11 @@ void AveragePairs(const float* upper, const float* lower, int count, float* out)
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(CountStoredVectors);
 HWY_EXPORT(WidenRange);
@@ -295,5 +295,5 @@ void average_pairs(const float* upper, const float* lower, int count, float* out
     HWY_DYNAMIC_DISPATCH(AveragePairs)(upper, lower, count, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

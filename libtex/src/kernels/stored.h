@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A row of stored values. A component is scale * value + offset. z is null if it is not stored; then it is
 // reconstruct_z(x, y).
@@ -60,4 +60,4 @@ void restore_stored_vectors(const StoredRow& row, int width, float* x, float* y,
 // out[i] is the mean of the texels 2 i and 2 i + 1 of both rows: (upper + upper + lower + lower) / 4.
 void average_pairs(const float* upper, const float* lower, int count, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,13 +8,13 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 std::int64_t KernelTarget() { return HWY_TARGET; }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -28,7 +28,7 @@ __attribute__((visibility("default"))) double TimerResolution();
 double TimerResolution() { return 1e-8; }
 }  // namespace hwy::platform
 
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(KernelTarget);
 
@@ -40,5 +40,5 @@ std::string highway_version() {
     return std::to_string(HWY_MAJOR) + "." + std::to_string(HWY_MINOR) + "." + std::to_string(HWY_PATCH);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

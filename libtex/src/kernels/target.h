@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The Highway target (HWY_AVX2, ...) to which kernels are dispatched now. For tests and reports: results do not depend
 // on it.
@@ -17,4 +17,4 @@ const char* kernel_target_name();
 
 std::string highway_version();
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -224,11 +224,11 @@ void FindBlocked(const TreeView& tree, const Ray* rays, std::size_t count, std::
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(TraceRays);
 HWY_EXPORT(FindBlocked);
@@ -241,5 +241,5 @@ void find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std:
     HWY_DYNAMIC_DISPATCH(FindBlocked)(tree, rays, count, blocked);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif  // HWY_ONCE

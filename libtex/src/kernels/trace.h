@@ -18,7 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kBoxes = 8;
 inline constexpr int kGroupTriangles = 4;
@@ -75,4 +75,4 @@ void trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit
 // blocked[k] becomes 1 if rays[k] hits anything, otherwise 0: what trace_rays() finds, in less time.
 void find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked);
 
-}  // namespace tex
+}  // namespace tex::inline v1

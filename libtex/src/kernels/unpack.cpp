@@ -13,7 +13,7 @@
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -86,11 +86,11 @@ void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule&
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(UnpackRow);
 
@@ -99,5 +99,5 @@ void unpack_row(const float* x, const float* y, const float* z, const UnpackRule
     HWY_DYNAMIC_DISPATCH(UnpackRow)(x, y, z, rule, count, out_x, out_y, out_z);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -3,7 +3,7 @@
 
 #pragma once
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct UnpackRule {
     bool is_unsigned = true;  // values are (n + 1) / 2
@@ -15,9 +15,9 @@ struct UnpackRule {
 };
 
 // Normals of `count` texels from the values of their components. If z is null, it is reconstructed. The computation is
-// that of unpack() in unpack.h. Rows are read and written in whole vectors, so they are padded like the rows of a
+// that of unpack() in pack.h. Rows are read and written in whole vectors, so they are padded like the rows of a
 // Plane. The outputs may be the inputs.
 void unpack_row(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
                 float* out_y, float* out_z);
 
-}  // namespace tex
+}  // namespace tex::inline v1

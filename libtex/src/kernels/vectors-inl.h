@@ -13,7 +13,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
 using FloatTag = hwy::HWY_NAMESPACE::CappedTag<float, 16>;
@@ -64,7 +64,7 @@ HWY_INLINE Vec3 NormaliseUpper(FloatTag d, Vec3 n) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #endif  // once for each target

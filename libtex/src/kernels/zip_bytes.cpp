@@ -10,7 +10,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace tex {
+namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -107,11 +107,11 @@ void RestoreZipBytes(const std::uint8_t* differences, std::size_t count, std::ui
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace tex
+}  // namespace tex::inline v1
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tex {
+namespace tex::inline v1 {
 
 HWY_EXPORT(PredictZipBytes);
 HWY_EXPORT(RestoreZipBytes);
@@ -126,5 +126,5 @@ void restore_zip_bytes(const std::byte* differences, std::size_t count, std::byt
     (reinterpret_cast<const std::uint8_t*>(differences), count, reinterpret_cast<std::uint8_t*>(out));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1
 #endif

@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Writes the differences of `count` bytes to `out`, which does not overlap `bytes`.
 void predict_zip_bytes(const std::byte* bytes, std::size_t count, std::byte* out);
@@ -15,4 +15,4 @@ void predict_zip_bytes(const std::byte* bytes, std::size_t count, std::byte* out
 // Writes the bytes with these differences to `out`, which does not overlap `differences`.
 void restore_zip_bytes(const std::byte* differences, std::size_t count, std::byte* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 thread_local LentMemory* lent = nullptr;
@@ -65,4 +65,18 @@ void LentMemory::release(void* bytes) noexcept {
     }
 }
 
-}  // namespace tex
+namespace {
+
+thread_local const RowAllocation::Allocate* current_allocation = nullptr;
+
+}  // namespace
+
+RowAllocation::RowAllocation(const Allocate& allocate) noexcept : before_(current_allocation) {
+    current_allocation = allocate ? &allocate : nullptr;
+}
+
+RowAllocation::~RowAllocation() { current_allocation = before_; }
+
+const RowAllocation::Allocate* RowAllocation::current() noexcept { return current_allocation; }
+
+}  // namespace tex::inline v1

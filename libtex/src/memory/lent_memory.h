@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // lent_memory.h: memory that a caller lends to what one thread does, and containers that take theirs from it.
 //
-// The folder memory/ knows no map and no thread but its own. Planes (allocate_rows() in image.h) and WorkingVectors
+// The folder memory/ knows no map and no thread but its own. Planes (allocate_rows() in types.h) and WorkingVectors
 // come from the heap, unless the thread that makes them has been lent memory. Verbs need not know which of the two it
 // is: so the functions of tex_c.h run the same rows as those of C++ and allocate nothing.
 
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <new>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Hands out pieces of a caller's memory and takes them back: the first piece that is large enough. For one thread.
 class LentMemory {
@@ -54,6 +55,24 @@ private:
     LentMemory* before_;
 };
 
+// Execution::allocate of the verb that this thread runs. While it lives, planes that the thread makes come from it, if
+// it is not empty.
+class RowAllocation {
+public:
+    using Allocate = std::function<std::shared_ptr<void>(std::size_t bytes)>;
+
+    explicit RowAllocation(const Allocate& allocate) noexcept;
+    ~RowAllocation();
+    RowAllocation(const RowAllocation&) = delete;
+    RowAllocation& operator=(const RowAllocation&) = delete;
+
+    // That of this thread; null: the heap.
+    static const Allocate* current() noexcept;
+
+private:
+    const Allocate* before_;
+};
+
 // Allocates from what the thread that made it had been lent, or from the heap. Throws std::bad_alloc.
 template <class T>
 class WorkingAllocator {
@@ -87,4 +106,4 @@ private:
 template <class T>
 using WorkingVector = std::vector<T, WorkingAllocator<T>>;
 
-}  // namespace tex
+}  // namespace tex::inline v1

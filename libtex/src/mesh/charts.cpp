@@ -9,7 +9,7 @@
 
 #include "mesh/disjoint_sets.h"
 
-namespace tex {
+namespace tex::inline v1 {
 std::vector<std::int32_t> charts_of(const MeshPart& part, int uv_set) {
     const std::vector<Float2>& uvs = part.uvs[static_cast<std::size_t>(uv_set)];
     DisjointSets sets(uvs.size());
@@ -34,4 +34,4 @@ std::vector<std::int32_t> charts_of(const MeshPart& part, int uv_set) {
     return charts;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "mesh/triangle_edge.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Corners are rounded to 1/256 texel, as GPUs do: then the side of an edge that a texel is on is exact, and triangles
@@ -221,4 +221,4 @@ std::int64_t CoverageMap::cover(int strip, std::vector<Covered>& texels) const {
     return overlaps;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

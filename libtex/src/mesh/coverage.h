@@ -8,11 +8,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/image.h>
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::int32_t kNoTriangle = -1;
 
@@ -28,7 +27,7 @@ struct Covered {
 class CoverageMap {
 public:
     // `gutter` is its width in texels. Strips have a multiple of `rows` rows, except the last one. Errors: unsupported,
-    // as described in convert.h.
+    // as described in mesh.h.
     static Result<CoverageMap> make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows = 1);
 
     [[nodiscard]] int strip_rows() const { return strip_rows_; }
@@ -63,4 +62,4 @@ private:
     std::vector<std::vector<std::uint32_t>> by_strip_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

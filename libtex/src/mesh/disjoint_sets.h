@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Sets of the numbers from 0 to count - 1. At first, each set has one number.
 class DisjointSets {
@@ -28,4 +28,4 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

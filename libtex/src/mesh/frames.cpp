@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<void> check_space(const TangentSpace& space) {
     if (space.part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
@@ -66,4 +66,4 @@ std::optional<Vector3> encode(const Frame& frame, Vector3 n) {
     return (1.0 / std::sqrt(dot(t, t))) * t;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

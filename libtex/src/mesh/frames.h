@@ -6,14 +6,14 @@
 #include <array>
 #include <optional>
 
-#include <tex/convert_options.h>
-#include <tex/result.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 #include "mesh/vector3.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
-// T', B' and N' of convert_options.h. They need be neither unit nor perpendicular.
+// T', B' and N' of mesh.h. They need be neither unit nor perpendicular.
 struct Frame {
     Vector3 t, b, n;
 };
@@ -48,4 +48,4 @@ private:
 // The inverse: the t that decodes to n. Nothing if T', B' and N' lie in one plane.
 [[nodiscard]] std::optional<Vector3> encode(const Frame& frame, Vector3 n);
 
-}  // namespace tex
+}  // namespace tex::inline v1

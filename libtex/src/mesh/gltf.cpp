@@ -10,12 +10,12 @@
 #include <string_view>
 #include <utility>
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 #include "mesh/gltf_extensions.h"
 #include "mesh/gltf_materials.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kColors = "COLOR_0";
@@ -329,4 +329,4 @@ Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load
     return parse_gltf(document->root(), buffers, draco, colors);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "mesh/gltf_buffers.h"
 #include "mesh/gltf_draco.h"
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a file that begins with these bytes is glTF: "glTF", or "{" after white space.
 bool is_gltf(std::span<const std::byte> head);
@@ -49,4 +49,4 @@ Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> by
 // GltfBuffers::accessor().
 Result<std::vector<MeshNode>> gltf_nodes(JsonValue root, GltfBuffers& buffers);
 
-}  // namespace tex
+}  // namespace tex::inline v1

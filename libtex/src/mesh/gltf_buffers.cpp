@@ -9,7 +9,7 @@
 
 #include "mesh/meshopt_buffers.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The size in bytes of a component, or 0.
@@ -347,4 +347,4 @@ Result<const GltfAccessor*> GltfBuffers::accessor(JsonValue index) {
     return &found->second;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The error of a file whose data is wrong.
 inline Error bad_gltf(std::string reason) { return {ErrorCode::bad_data, {}, std::move(reason)}; }
@@ -98,4 +98,4 @@ private:
     std::size_t decoded_bytes_ = 0;                           // of bytes_
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

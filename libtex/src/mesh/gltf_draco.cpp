@@ -8,7 +8,7 @@
 
 #include "mesh/gltf.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
@@ -114,4 +114,4 @@ Result<const GltfAccessor*> DracoTriangles::indices(JsonValue primitive) {
     return answer_->buffers->accessor(answer_for(primitive)["indices"]);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

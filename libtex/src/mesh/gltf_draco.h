@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "mesh/gltf_buffers.h"
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes the buffers of a request. The answer is not to be trusted.
 using DecodeDraco = std::function<Result<std::vector<std::byte>>(std::span<const std::byte> request)>;
@@ -47,4 +47,4 @@ private:
     std::map<std::string, GltfAccessor> accessors_;  // with `normalized` as the file says
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Those that libtex reads, and those that change neither triangles nor their attributes nor where textures lie.
@@ -93,4 +93,4 @@ std::vector<std::string> ignored_extensions(JsonValue root) {
     return sentences;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

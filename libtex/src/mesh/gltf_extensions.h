@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Errors: unsupported (the file requires an extension that is neither read nor known to be harmless, by its name).
 Result<void> check_required_extensions(JsonValue root);
@@ -19,4 +19,4 @@ Result<void> check_required_extensions(JsonValue root);
 // primitives, accessors, buffer views and places of textures.
 std::vector<std::string> ignored_extensions(JsonValue root);
 
-}  // namespace tex
+}  // namespace tex::inline v1

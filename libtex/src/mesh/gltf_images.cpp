@@ -10,7 +10,7 @@
 
 #include "mesh/gltf_materials.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The image that a texture shows, or -1: the first source that is there.
@@ -115,4 +115,4 @@ std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const 
     return images;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

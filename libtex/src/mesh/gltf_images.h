@@ -5,13 +5,13 @@
 
 #include <vector>
 
-#include <tex/model.h>
-#include <tex/result.h>
+#include <tex/mesh.h>
+#include <tex/types.h>
 
 #include "mesh/gltf_buffers.h"
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Errors: bad_data.
 Result<std::vector<ModelMap>> gltf_maps(JsonValue root);
@@ -20,4 +20,4 @@ Result<std::vector<ModelMap>> gltf_maps(JsonValue root);
 // is wrong with an image is its own error.
 std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const std::vector<ModelMap>& maps);
 
-}  // namespace tex
+}  // namespace tex::inline v1

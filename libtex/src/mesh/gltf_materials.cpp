@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include <tex/mesh_io.h>
+#include <tex/mesh.h>
 
 #include "mesh/gltf_buffers.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A finite number that may be missing.
@@ -130,4 +130,4 @@ Result<std::vector<MeshMaterial>> gltf_materials(JsonValue root) {
     return materials;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "mesh/json.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A slot of a material that names a texture.
 struct GltfSlot {
@@ -32,4 +32,4 @@ Result<std::vector<GltfSlot>> slots_of(JsonValue material);
 // Errors: bad_data.
 Result<std::vector<MeshMaterial>> gltf_materials(JsonValue root);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "mesh/gltf.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using Matrix = std::array<double, 12>;  // rows of 3x4
@@ -213,4 +213,4 @@ Result<std::vector<MeshNode>> gltf_nodes(JsonValue root, GltfBuffers& buffers) {
     return result;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

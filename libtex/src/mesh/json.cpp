@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using nlohmann::json;
@@ -96,4 +96,4 @@ std::optional<std::int64_t> JsonValue::count() const {
     return static_cast<std::int64_t>(*value);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,9 +15,9 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
 inline constexpr int kMaxJsonDepth = 64;
@@ -57,4 +57,4 @@ private:
     std::shared_ptr<const void> document_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,14 +10,14 @@
 #include <string>
 #include <utility>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "mesh/disjoint_sets.h"
 #include "mesh/vectors.h"
 #include "mesh/weld.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kTrianglesPerPiece = 1 << 13;  // triangles that a thread takes at a time
@@ -198,4 +198,4 @@ Result<std::vector<Float4>> meshopt_tangents(const MeshPart& part, int uv_set, c
     return Meshopt(part, uv_set).run(execution);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,13 +13,12 @@
 
 #include <vector>
 
-#include <tex/execution.h>
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // As mikktspace_tangents().
 Result<std::vector<Float4>> meshopt_tangents(const MeshPart& part, int uv_set, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

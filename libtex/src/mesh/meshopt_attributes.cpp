@@ -8,7 +8,7 @@
 
 #include "mesh/meshopt_buffers.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kMostInBlock = 256, kGroup = 16;
@@ -138,4 +138,4 @@ bool decode_meshopt_attributes(std::span<const std::byte> bytes, std::size_t str
     return from.left() == 0;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

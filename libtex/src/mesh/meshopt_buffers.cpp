@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 template <class T>
@@ -126,4 +126,4 @@ Result<std::vector<std::byte>> decode_meshopt(const MeshoptLayout& layout, std::
     return to;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,9 +17,9 @@
 #include <span>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class MeshoptMode { attributes, triangles, indices };
 enum class MeshoptFilter { none, octahedral, quaternion, exponential, color };
@@ -41,4 +41,4 @@ bool decode_meshopt_triangles(std::span<const std::byte> bytes, std::size_t size
 bool decode_meshopt_indices(std::span<const std::byte> bytes, std::size_t size, std::vector<std::byte>& to);
 void apply_meshopt_filter(MeshoptFilter filter, std::size_t stride, std::vector<std::byte>& elements);
 
-}  // namespace tex
+}  // namespace tex::inline v1

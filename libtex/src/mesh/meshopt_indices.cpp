@@ -6,7 +6,7 @@
 
 #include "mesh/meshopt_buffers.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Numbers of one to five bytes, seven bits each, the lowest first.
@@ -179,4 +179,4 @@ bool decode_meshopt_indices(std::span<const std::byte> bytes, std::size_t size, 
     return data.at_end();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include <tex/tangents.h>
+#include <tex/mesh.h>
 
 #include "mesh/neighbours.h"
 #include "mesh/vectors.h"
@@ -21,7 +21,7 @@
 #include "rows/math.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kGrain = 1 << 13;                           // triangles or groups that a thread takes at a time
@@ -297,7 +297,7 @@ Result<std::vector<Float4>> Mikktspace::run(const Execution& execution) {
     if (!welded) return welded.error();
     welded_ = std::move(*welded);
     sort_out();
-    if (const auto found = find_directions({execution.threads, {}}); !found) return found.error();
+    if (const auto found = find_directions(execution.quiet()); !found) return found.error();
     auto neighbours = find_neighbours(corners_, pairing);
     if (!neighbours) return neighbours.error();
     neighbours_ = std::move(*neighbours);
@@ -316,4 +316,4 @@ Result<std::vector<Float4>> mikktspace_tangents(const MeshPart& part, int uv_set
     return Mikktspace(part, uv_set).run(execution);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

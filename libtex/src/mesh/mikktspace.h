@@ -18,15 +18,14 @@
 
 #include <vector>
 
-#include <tex/execution.h>
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The tangents of all corners. w is 1 where u and v turn counter-clockwise on the triangle, and -1 elsewhere.
 // Preconditions: check_part(part), normals and the set of UVs exist.
 // Errors: unsupported (kMaxFan), out_of_memory, cancelled.
 Result<std::vector<Float4>> mikktspace_tangents(const MeshPart& part, int uv_set, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

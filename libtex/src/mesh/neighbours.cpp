@@ -10,7 +10,7 @@
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // An edge, and the one of its vertices that it is sorted by.
@@ -191,4 +191,4 @@ Result<std::vector<std::int32_t>> find_neighbours(const std::vector<std::uint32_
     return Finder(corners).run(execution);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::int32_t kNoNeighbour = -1;
 
@@ -23,4 +22,4 @@ inline constexpr std::int32_t kNoNeighbour = -1;
 Result<std::vector<std::int32_t>> find_neighbours(const std::vector<std::uint32_t>& corners,
                                                   const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
@@ -332,4 +332,4 @@ bool is_obj(std::string_view head) {
 
 Result<Mesh> parse_obj(std::string_view text, bool colors) { return ObjReader(colors).read(without_mark(text)); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,9 +6,9 @@
 #include <string_view>
 
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a text begins as an OBJ file does: with a comment or a known keyword.
 bool is_obj(std::string_view head);
@@ -16,4 +16,4 @@ bool is_obj(std::string_view head);
 // `colors`: whether those of vertices are read. Errors: bad_data, without a file.
 Result<Mesh> parse_obj(std::string_view text, bool colors = false);
 
-}  // namespace tex
+}  // namespace tex::inline v1

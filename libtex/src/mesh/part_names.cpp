@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using Marks = std::array<std::string_view, 4>;
@@ -48,4 +48,4 @@ std::vector<std::string> lone_names(const std::vector<std::string>& names, const
     return left;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

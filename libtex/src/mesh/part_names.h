@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// part_names.h: what names of parts of low and high meshes have in common: match_names() of tex/mesh_selection.h.
+// part_names.h: what names of parts of low and high meshes have in common: match_names() of tex/mesh.h.
 
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class PartSide { low, high };
 
@@ -17,4 +17,4 @@ enum class PartSide { low, high };
 std::vector<std::string> lone_names(const std::vector<std::string>& names, const std::vector<int>& own,
                                     const std::vector<int>& others);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct TrianglePoint {
     std::int64_t x, y;
@@ -51,4 +51,4 @@ private:
     std::int64_t value_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

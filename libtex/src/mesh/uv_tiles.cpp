@@ -2,7 +2,7 @@
 
 #include "mesh/uv_tiles.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 int tile_of(const MeshPart& part, std::size_t triangle) {
     double u = 0.0, v = 0.0;
@@ -28,4 +28,4 @@ bool leaves_tile(const MeshPart& part, std::size_t triangle, int tile) {
     return false;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

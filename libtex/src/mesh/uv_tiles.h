@@ -7,7 +7,7 @@
 
 #include <tex/mesh.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The tile of the centre of a triangle's UVs, or 0.
 int tile_of(const MeshPart& part, std::size_t triangle);
@@ -15,4 +15,4 @@ int tile_of(const MeshPart& part, std::size_t triangle);
 // Whether a corner is more than 1e-4 outside of the tile.
 bool leaves_tile(const MeshPart& part, std::size_t triangle, int tile);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct Turn {
@@ -39,4 +39,4 @@ void move_uvs(std::vector<Float2>& uvs, const UvTransform& transform, YAxis v_ax
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

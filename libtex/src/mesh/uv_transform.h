@@ -7,10 +7,10 @@
 
 #include <tex/mesh.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Moves UVs by the formula of UvTransform (mesh.h), in double precision. `v_axis` is that of the UVs; the formula is
 // for v that points down.
 void move_uvs(std::vector<Float2>& uvs, const UvTransform& transform, YAxis v_axis);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include <tex/mesh.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct Vector3 {
     double x = 0.0, y = 0.0, z = 0.0;
@@ -36,4 +36,4 @@ inline Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>&
     return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

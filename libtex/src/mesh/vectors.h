@@ -13,7 +13,7 @@
 
 #include <tex/mesh.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline Float3 operator+(Float3 a, Float3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Float3 operator-(Float3 a, Float3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -31,4 +31,4 @@ inline bool is_finite(Float2 a) { return std::isfinite(a.x) && std::isfinite(a.y
 inline bool is_finite(Float3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 inline bool is_finite(Float4 a) { return is_finite(Float3{a.x, a.y, a.z}) && std::isfinite(a.w); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

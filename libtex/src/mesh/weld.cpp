@@ -10,7 +10,7 @@
 #include "mesh/vectors.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kSlabs = 2048;
@@ -204,4 +204,4 @@ Result<std::vector<std::uint32_t>> weld_to_first(const MeshPart& part, int uv_se
     return welded;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

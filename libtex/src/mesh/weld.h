@@ -6,11 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/execution.h>
 #include <tex/mesh.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // For each corner, the corner that represents all those with its position, normal and UV (of set `uv_set`).
 //
@@ -23,4 +22,4 @@ Result<std::vector<std::uint32_t>> weld_corners(const MeshPart& part, int uv_set
 // The same classes, each represented by its first corner.
 Result<std::vector<std::uint32_t>> weld_to_first(const MeshPart& part, int uv_set, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 View::View(const Camera& camera, Extent pixels, const std::function<double(Vec3 direction)>& support) {
     const double yaw = radians(static_cast<double>(camera.yaw));
@@ -59,4 +59,4 @@ void View::turn(double sine, double cosine) {
     for (Vec3* v : {&eye_, &toward_, &right_, &up_, &corner_}) *v = turn_about_y(*v, sine, cosine);
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

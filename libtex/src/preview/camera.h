@@ -10,7 +10,7 @@
 #include "preview/raster.h"
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // The points origin + t direction, t > 0. The direction is not normalised.
 struct Ray {
@@ -45,4 +45,4 @@ private:
     bool parallel_ = false;
 };
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 std::size_t offset_of(const Level& level, int x, int y) {
@@ -88,4 +88,4 @@ std::string fitted(std::string_view words, int scale, int width) {
     return std::string(words.substr(0, begins[first])).append(kCut).append(words.substr(begins[begins.size() - last]));
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -6,12 +6,12 @@
 #include <string>
 #include <string_view>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
 #include "preview/colormap.h"
 #include "preview/font.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 inline constexpr Code kGround{38, 40, 44};
 inline constexpr Code kInk{226, 228, 232};
@@ -54,4 +54,4 @@ private:
 // The size of letters for a picture: 1, or 2 if it is 1024 pixels wide or wider.
 [[nodiscard]] constexpr int text_scale(int picture_width) { return picture_width >= 1024 ? 2 : 1; }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

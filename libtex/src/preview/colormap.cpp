@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr Vec3 kMagenta{1.0, 0.0, 1.0};
@@ -73,4 +73,4 @@ std::uint8_t srgb_code(double linear) {
     return static_cast<std::uint8_t>(std::upper_bound(kBegins.begin(), kBegins.end(), linear) - kBegins.begin());
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // A colour as stored in an 8-bit sRGB picture.
 struct Code {
@@ -39,4 +39,4 @@ struct Code {
 // Linear light of an sRGB value, 0 to 1.
 [[nodiscard]] double srgb_to_linear(double value);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

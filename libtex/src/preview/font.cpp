@@ -2,7 +2,7 @@
 
 #include "preview/font.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // Rows from the top, five bits each, with the leftmost pixel in bit 4. The last two rows lie below the baseline.
@@ -112,4 +112,4 @@ const std::uint8_t* glyph(char c) {
     return kGlyphs[index];
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

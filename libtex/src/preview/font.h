@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 inline constexpr int kGlyphWidth = 5;
 inline constexpr int kGlyphHeight = 9;   // 7 above the baseline, 2 below
@@ -15,4 +15,4 @@ inline constexpr int kGlyphAdvance = 6;  // from one letter to the next
 // character is a box.
 [[nodiscard]] const std::uint8_t* glyph(char c);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

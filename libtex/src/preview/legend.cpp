@@ -11,7 +11,7 @@
 
 #include "preview/canvas.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // In pixels, times text_scale().
@@ -118,4 +118,4 @@ Texture with_key(Texture picture, const std::vector<Keyword>& words) {
     return std::move(canvas).take();
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
 #include "preview/colormap.h"
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // Values from `least` to `greatest`, in viridis, in the diverging colours (then least = -greatest), in grey, or in
 // inferno.
@@ -45,4 +45,4 @@ struct Keyword {
 };
 [[nodiscard]] Texture with_key(Texture picture, const std::vector<Keyword>& words);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

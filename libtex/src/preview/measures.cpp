@@ -11,12 +11,11 @@
 #include <vector>
 
 #include "checks/curl.h"
-#include "preview/progress.h"
 #include "preview/vector.h"
 #include "rows/curvature_rows.h"
 #include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 Vec3 normal_at(const NormalMap& map, int i, int j) {
@@ -94,7 +93,7 @@ std::string curl_title(const Curl& curl) {
 
 Result<Measure> measure_curl_of(const NormalMap& map, float maximum, const Execution& execution) {
     const CurlView view = curl_view(map);
-    auto values = fill(map.extent(), part(execution, 0.0, 0.5), [&](int i, int j) {
+    auto values = fill(map.extent(), part_of(execution, 0.0, 0.5), [&](int i, int j) {
         const Mixed mixed = mixed_at(view.slopes, i, j);
         const double curl = mixed.dq_dx - mixed.dp_dy;
         return curl == curl ? curl : 0.0;
@@ -102,7 +101,7 @@ Result<Measure> measure_curl_of(const NormalMap& map, float maximum, const Execu
     if (!values) return values.error();
     // The scale follows the largest curl that these derivatives could have, not the actual curl, so that a sound map is
     // white.
-    const auto most = fill(map.extent(), part(execution, 0.5, 1.0), [&](int i, int j) {
+    const auto most = fill(map.extent(), part_of(execution, 0.5, 1.0), [&](int i, int j) {
         const Mixed mixed = mixed_at(view.slopes, i, j);
         return std::abs(mixed.dq_dx) + std::abs(mixed.dp_dy);
     });
@@ -206,4 +205,4 @@ Result<Measure> measure(const PreviewOptions& options, const NormalMap& map, con
     return measure_texels(*how, map, options.maximum, execution);
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -3,13 +3,12 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/normal_map.h>
 #include <tex/preview.h>
+#include <tex/types.h>
 
 #include "preview/legend.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 struct Measure {
     Plane<float> values;
@@ -27,4 +26,4 @@ struct Measure {
 // The least of 0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 20, 30, 45, 60, 90 and 180 degrees that is not below `degrees`.
 [[nodiscard]] double round_angle(double degrees);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

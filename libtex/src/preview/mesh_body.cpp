@@ -8,7 +8,7 @@
 
 #include "mesh/frames.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 using Weights = std::array<double, 3>;
@@ -120,4 +120,4 @@ MeshHit MeshBody::meet(std::size_t triangle, const View& view, double x, double 
     return found;
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

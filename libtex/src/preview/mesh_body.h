@@ -7,14 +7,14 @@
 #include <array>
 #include <cstddef>
 
-#include <tex/convert_options.h>
+#include <tex/mesh.h>
 
 #include "preview/camera.h"
 #include "preview/sampling.h"
 #include "preview/shapes.h"
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // A point of a triangle, and the footprint of its pixel.
 struct MeshHit {
@@ -48,4 +48,4 @@ private:
     double scale_ = 1.0;
 };
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

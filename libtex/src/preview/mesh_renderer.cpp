@@ -9,11 +9,10 @@
 
 #include "preview/canvas.h"
 #include "preview/mesh_body.h"
-#include "preview/progress.h"
 #include "preview/raster.h"
 #include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // Tags of lines; those of triangles are smaller.
@@ -125,7 +124,7 @@ private:
 
 Result<Texture> render_mesh(const Stage& stage, Space space, const Surface& surface, const MeshLines& lines,
                             const Execution& execution) {
-    const auto raster = raster_of(stage, lines, part(execution, 0.0, 0.1));
+    const auto raster = raster_of(stage, lines, part_of(execution, 0.0, 0.1));
     if (!raster) return raster.error();
     Canvas canvas(stage.size);
     const MeshPainter painter(stage, space, surface, lines);
@@ -142,9 +141,9 @@ Result<Texture> render_mesh(const Stage& stage, Space space, const Surface& surf
             }
         }
     };
-    const Execution drawing = part(execution, 0.1, 1.0);
+    const Execution drawing = part_of(execution, 0.1, 1.0);
     if (auto done = parallel_for(drawing, raster->bands(), 1, draw); !done) return done.error();
     return std::move(canvas).take();
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

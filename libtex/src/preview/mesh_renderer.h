@@ -8,7 +8,7 @@
 #include "preview/colormap.h"
 #include "preview/renderer.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // A line in the picture's world, which hides what is behind it and is hidden by what is clearly in front of it.
 struct MeshLine {
@@ -25,4 +25,4 @@ struct MeshLines {
 [[nodiscard]] Result<Texture> render_mesh(const Stage& stage, Space space, const Surface& surface,
                                           const MeshLines& lines, const Execution& execution);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

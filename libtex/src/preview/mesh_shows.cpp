@@ -14,7 +14,7 @@
 #include "preview/tangent_lines.h"
 #include "preview/uv_layout.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // The mesh without the map, so that lines stand out.
@@ -82,10 +82,10 @@ Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& optio
     return picture_of(options.show)->draw(scene, options, stage, execution);
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render
 
-namespace tex {
+namespace tex::inline v1 {
 
 bool needs_mesh(Show show) { return render::picture_of(show) != nullptr; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,10 +7,10 @@
 
 #include "preview/renderer.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // The picture options.show, with its legend. Preconditions: needs_mesh(options.show), stage.mesh. Errors: as preview().
 [[nodiscard]] Result<Texture> show_mesh(const PreviewScene& scene, const PreviewOptions& options, const Stage& stage,
                                         const Execution& execution);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 Vec2 parallax_offset(const Parallax& parallax, const Relief& relief, Vec2 uv, const Footprint& footprint, Vec3 view,
                      int anisotropy) {
@@ -32,4 +32,4 @@ Vec2 parallax_offset(const Parallax& parallax, const Relief& relief, Vec2 uv, co
     return offset_at(last);
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 
 #include "preview/sampling.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // Heights, of which `white` counts as 1.
 struct Relief {
@@ -19,4 +19,4 @@ struct Relief {
 [[nodiscard]] Vec2 parallax_offset(const Parallax& parallax, const Relief& relief, Vec2 uv, const Footprint& footprint,
                                    Vec3 view, int anisotropy);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 
 #include "mesh/triangle_edge.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr int kSpacing = Raster::kUnits / Raster::kSide;  // from a sample to the next
@@ -170,4 +170,4 @@ void Raster::draw_triangle(const RasterTriangle& t, Band& band) const {
     }
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -11,10 +11,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // A point of the picture: pixels from its top left corner. Greater `nearness` hides less; between two points of space
 // it is linear over the picture.
@@ -86,4 +85,4 @@ private:
     std::vector<std::uint32_t> tall_;    // triangles that touch more bands
 };
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -9,7 +9,7 @@
 #include "preview/shading.h"
 #include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr int kRowsOfRays = 8;
@@ -106,4 +106,4 @@ Result<Texture> render(const Stage& stage, Space space, const Surface& surface, 
     return std::move(canvas).take();
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -10,7 +10,7 @@
 #include "preview/sampling.h"
 #include "preview/shapes.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 class MeshBody;
 
@@ -38,4 +38,4 @@ using Surface = std::function<Vec3(const Hit& hit, const Footprint& footprint)>;
 [[nodiscard]] Result<Texture> render(const Stage& stage, Space space, const Surface& surface,
                                      const Execution& execution);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -9,7 +9,7 @@
 
 #include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // The texel at index i of an axis of n texels.
@@ -167,4 +167,4 @@ Sample sample(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int a
     return sum;
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

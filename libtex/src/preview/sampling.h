@@ -6,15 +6,12 @@
 #include <array>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/mip_chain.h>
-#include <tex/result.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 inline constexpr int kMaxChannels = 3;
 using Sample = std::array<double, kMaxChannels>;
@@ -58,4 +55,4 @@ struct Footprint {
 // (EXT_texture_filter_anisotropic.) Texel centres lie at (i + 0.5) / w; v is 1 at the upper edge of the top row.
 [[nodiscard]] Sample sample(const Sampler& sampler, Vec2 uv, const Footprint& footprint, int anisotropy);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

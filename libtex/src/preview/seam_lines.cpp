@@ -12,7 +12,7 @@
 #include "preview/shading.h"
 #include "preview/surfaces.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 // A part whose set 0 of UVs is that of the space, where the functions of seams expect it; made only if it is not.
@@ -83,4 +83,4 @@ SeamLines seam_lines(const MeshBody& mesh, const PreviewScene& scene, const Prev
     return result;
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

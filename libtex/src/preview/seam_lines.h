@@ -8,7 +8,7 @@
 #include "preview/legend.h"
 #include "preview/mesh_renderer.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 struct SeamLines {
     MeshLines lines;
@@ -19,4 +19,4 @@ struct SeamLines {
 [[nodiscard]] SeamLines seam_lines(const MeshBody& mesh, const PreviewScene& scene, const PreviewOptions& options,
                                    double width);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 Vec3 vec(const Rgb& color) {
@@ -72,4 +72,4 @@ Vec3 blend_whiteout(Vec3 base, Vec3 detail) {
     return normalize({base.x + detail.x, base.y + detail.y, base.z * detail.z});
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // Light and material of PreviewOptions, as doubles; red, green and blue are the x, y and z of a Vec3.
 struct Illumination {
@@ -32,4 +32,4 @@ struct Illumination {
 // Whiteout: normalize(n1.xy + n2.xy, n1.z n2.z) (Oat 2007).
 [[nodiscard]] Vec3 blend_whiteout(Vec3 base, Vec3 detail);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr double kHalfEdge = 0.7;  // half the edge of the cube
@@ -164,4 +164,4 @@ Vec2 uv_step(const Hit& hit, const Ray& ray) {
     return {dot(step, hit.tangent) * hit.u_per_length, dot(step, hit.binormal) * hit.v_per_length};
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

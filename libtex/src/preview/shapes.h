@@ -10,7 +10,7 @@
 #include "preview/camera.h"
 #include "preview/vector.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // A point of a shape. A move by a along the tangent and by b along the binormal changes (u, v) by
 // (a u_per_length, b v_per_length).
@@ -52,4 +52,4 @@ private:
 // does not meet that plane.
 [[nodiscard]] Vec2 uv_step(const Hit& hit, const Ray& ray);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

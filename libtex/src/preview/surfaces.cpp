@@ -3,9 +3,9 @@
 #include "preview/surfaces.h"
 
 #include "preview/parallax.h"
-#include "preview/progress.h"
+#include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 std::optional<std::vector<PlaneView<const float>>> colors_of(const Image& image) {
@@ -49,15 +49,15 @@ Result<Textures> Textures::prepare(const PreviewScene& scene, const PreviewOptio
         sampler = pyramid->sampler(options.wrap_x, options.wrap_y);
         return {};
     };
-    if (auto done = colors(scene.albedo, textures.albedo_, textures.albedo, part(execution, 0.0, 0.5)); !done)
+    if (auto done = colors(scene.albedo, textures.albedo_, textures.albedo, part_of(execution, 0.0, 0.5)); !done)
         return done.error();
     if (auto done =
-            colors(scene.detail_albedo, textures.detail_albedo_, textures.detail_albedo, part(execution, 0.5, 0.8));
+            colors(scene.detail_albedo, textures.detail_albedo_, textures.detail_albedo, part_of(execution, 0.5, 0.8));
         !done) {
         return done.error();
     }
     if (scene.height != nullptr) {
-        auto pyramid = Pyramid::build({scene.height->view()}, part(execution, 0.8, 1.0));
+        auto pyramid = Pyramid::build({scene.height->view()}, part_of(execution, 0.8, 1.0));
         if (!pyramid) return pyramid.error();
         textures.height_ = std::move(*pyramid);
         textures.height = textures.height_->sampler(options.wrap_x, options.wrap_y);
@@ -127,4 +127,4 @@ Vec3 LitSurface::albedo(Vec2 uv, const Footprint& footprint) const {
     return color;
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -12,7 +12,7 @@
 #include "preview/sampling.h"
 #include "preview/shading.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // The textures of a scene, prepared for sampling.
 class Textures {
@@ -55,4 +55,4 @@ private:
     Illumination with_;
 };
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -9,7 +9,7 @@
 
 #include "preview/mesh_body.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr std::size_t kMostVertices = 4096;
@@ -72,4 +72,4 @@ MeshLines tangent_lines(const MeshBody& mesh, const View& view, double width) {
     return result;
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -6,7 +6,7 @@
 #include "preview/colormap.h"
 #include "preview/mesh_renderer.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // As in Catlike Coding's TangentSpaceVisualizer (Rendering 6, Bumpiness), in brighter shades.
 inline constexpr Code kTangentColor{255, 92, 80};
@@ -16,4 +16,4 @@ inline constexpr Code kNormalColor{88, 220, 100};
 // The lines of `tangents` that preview.h describes.
 [[nodiscard]] MeshLines tangent_lines(const MeshBody& mesh, const View& view, double width);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -11,11 +11,10 @@
 
 #include "preview/canvas.h"
 #include "preview/legend.h"
-#include "preview/progress.h"
 #include "preview/raster.h"
 #include "threads/parallel.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 namespace {
 
 constexpr Code kUpright{255, 255, 255}, kMirrored{255, 150, 40};
@@ -161,4 +160,4 @@ Result<Texture> uv_layout(const MeshBody& mesh, const PreviewScene& scene, const
     return with_key(std::move(picture), {{"triangles", kUpright}, {"mirrored triangles", kMirrored}});
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

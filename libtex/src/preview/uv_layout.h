@@ -7,11 +7,11 @@
 
 #include "preview/mesh_body.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 // The picture `uv` of preview.h, with its legend if options.legend. Errors: unsupported (as preview()), out_of_memory,
 // cancelled.
 [[nodiscard]] Result<Texture> uv_layout(const MeshBody& mesh, const PreviewScene& scene, const PreviewOptions& options,
                                         Extent size, const Execution& execution);
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -7,7 +7,7 @@
 
 #include "rows/math.h"
 
-namespace tex::render {
+namespace tex::inline v1::render {
 
 struct Vec2 {
     double x = 0.0, y = 0.0;
@@ -54,4 +54,4 @@ inline Vec3 turn_about_z(Vec3 a, double sine, double cosine) {
     return {a.x * cosine - a.y * sine, a.x * sine + a.y * cosine, a.z};
 }
 
-}  // namespace tex::render
+}  // namespace tex::inline v1::render

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kBins = 16;
@@ -123,4 +123,4 @@ void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRa
     for (int k = 0; k < kBins; ++k) (k < cut.bin ? left : right).box.include(bins[cut.axis][k].box);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct FloatBox {
     float low[3] = {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity(),
@@ -49,4 +49,4 @@ struct BoxRange {
 // Precondition: it has at least two.
 void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "rays/box_cuts.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Ranges below this are built by one thread each.
@@ -132,7 +132,7 @@ Result<void> TreeBuilder::box_triangles(const Execution& execution) {
         for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
             boxed_[k] = {box_of(k), static_cast<std::uint32_t>(k)};
     };
-    return parallel_for({execution.threads, {}}, static_cast<int>(boxed_.size()), 1 << 14, fill);
+    return parallel_for(execution.quiet(), static_cast<int>(boxed_.size()), 1 << 14, fill);
 }
 
 // The levels above the pieces, one after the other: all ranges of a level at once.
@@ -152,8 +152,7 @@ Result<void> TreeBuilder::build_top(const Execution& execution) {
                 wide.count = children_of(boxed_.data(), wide.job.range, wide.job.level, wide.children);
             }
         };
-        if (auto done = parallel_for({execution.threads, {}}, static_cast<int>(level.size()), 1, cut); !done)
-            return done;
+        if (auto done = parallel_for(execution.quiet(), static_cast<int>(level.size()), 1, cut); !done) return done;
         std::vector<Wide> next;
         for (const Wide& wide : level) {
             const auto index = static_cast<std::uint32_t>(tree_.boxes_.size());
@@ -260,4 +259,4 @@ Result<BoxTree> BoxTree::build(const Triangles& triangles, const Execution& exec
 
 TreeView BoxTree::view() const { return {boxes_.data(), groups_.data(), {center_.x, center_.y, center_.z}, scale_}; }
 
-}  // namespace tex
+}  // namespace tex::inline v1

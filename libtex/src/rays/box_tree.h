@@ -9,14 +9,13 @@
 #include <limits>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "kernels/trace.h"
 #include "rays/triangles.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The point of a triangle that is nearest to another point.
 struct NearestPoint {
@@ -63,4 +62,4 @@ private:
 // (Ericson, Real-Time Collision Detection, 2005, 5.1.5.)
 [[nodiscard]] NearestPoint nearest_on_triangle(Vector3 p, const std::array<Vector3, 3>& corners);
 
-}  // namespace tex
+}  // namespace tex::inline v1

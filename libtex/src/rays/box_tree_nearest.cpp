@@ -5,7 +5,7 @@
 
 #include "rays/box_tree.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Planes of boxes are rounded by less than this, in the units of the tree.
@@ -109,4 +109,4 @@ bool BoxTree::is_within(Vector3 p, double squared) const {
     return search(p, more, squared).triangle != kNoHit;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kFarthest = 0.1;  // of the diagonal: what is farther away belongs to something else
@@ -129,8 +129,8 @@ Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directi
     for (std::size_t k = 0; k < groups.all().size(); ++k) {
         const std::vector<std::uint32_t> triangles = triangles_of(low, groups, static_cast<int>(k));
         if (triangles.empty()) continue;
-        auto seen = see_group(low, triangles, directions, groups.all()[k], kFarthest * diagonal,
-                              {execution.threads, {}}, sides);
+        auto seen =
+            see_group(low, triangles, directions, groups.all()[k], kFarthest * diagonal, execution.quiet(), sides);
         if (!seen) return seen.error();
     }
     const auto with_reserve = [&](double distance) { return (1.0 + kReserve) * distance + kLeast * diagonal; };
@@ -148,4 +148,4 @@ double distance_between(const MeshPart& low, const RayGroups& groups) {
     return std::sqrt(squared);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

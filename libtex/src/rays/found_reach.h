@@ -6,7 +6,7 @@
 #include "rays/ray_directions.h"
 #include "rays/ray_groups.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // In the unit of the meshes.
 struct FoundReach {
@@ -20,4 +20,4 @@ Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directi
 // The smallest distance of the low mesh's vertices from what their rays may meet.
 double distance_between(const MeshPart& low, const RayGroups& groups);
 
-}  // namespace tex
+}  // namespace tex::inline v1

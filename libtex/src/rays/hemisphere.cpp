@@ -7,7 +7,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kUnit = 0x1p-32;
@@ -83,4 +83,4 @@ void Hemisphere::about(Vector3 axis, Vector3 face, std::uint32_t seed, Vector3* 
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 
 #include "mesh/vector3.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class Hemisphere {
 public:
@@ -42,4 +42,4 @@ private:
     Turn coarse_[256], fine_[256];
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "mesh/frames.h"
 #include "rows/usable.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A place of a picture that repeats: two columns, two rows, and the parts of the second ones.
@@ -131,4 +131,4 @@ Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshP
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "rays/triangles.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class HighSurface {
 public:
@@ -49,4 +49,4 @@ private:
 // Errors: bad_option, if ids and details do not fit the parts (transfer.h).
 Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high);
 
-}  // namespace tex
+}  // namespace tex::inline v1

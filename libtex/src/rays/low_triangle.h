@@ -7,12 +7,12 @@
 #include <array>
 #include <cstddef>
 
-#include <tex/image.h>
+#include <tex/types.h>
 
 #include "mesh/frames.h"
 #include "rays/triangles.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class LowTriangle {
 public:
@@ -51,4 +51,4 @@ private:
     std::array<double, 3> along_x_{}, along_y_{};  // how the weights change in a texel
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

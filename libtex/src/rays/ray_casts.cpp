@@ -7,7 +7,7 @@
 
 #include "rays/high_surface.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Ray ray_from(Vector3 origin, Vector3 direction, double length, Facing facing) {
@@ -92,4 +92,4 @@ RayEnd RayCaster::cast_line(const RayStart& start) const {
     return nearer(hits[0], hits[1]);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

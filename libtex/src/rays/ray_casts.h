@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/transfer_options.h>
+#include <tex/mesh.h>
 
 #include "rays/box_tree.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A place of the low mesh.
 struct RayStart {
@@ -56,4 +56,4 @@ private:
     double back_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

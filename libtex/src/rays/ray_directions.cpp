@@ -12,7 +12,7 @@
 #include "rows/math.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // For each vertex, the number of its position; equal positions have the same number.
@@ -200,4 +200,4 @@ Vector3 RayDirections::skewed(std::size_t triangle, const std::array<double, 3>&
     return dot(face, face) > 0.5 ? face : Vector3{0.0, 0.0, 1.0};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

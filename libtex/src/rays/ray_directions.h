@@ -10,11 +10,11 @@
 #include <optional>
 #include <vector>
 
-#include <tex/transfer_options.h>
+#include <tex/mesh.h>
 
 #include "rays/box_tree.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class RayDirections {
 public:
@@ -46,4 +46,4 @@ private:
     std::optional<BoxTree> hard_tree_;  // none: there are no hard edges
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "rows/usable.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The parts with a number, or all of them.
@@ -42,7 +42,7 @@ Result<RayGroups> RayGroups::make(const MeshPart& low, const std::vector<MeshPar
     const std::vector<int> numbers = common_numbers(inputs);
     if (numbers.empty()) return bad_option("no part of the high mesh belongs to one of the low mesh");
     RayGroups made;
-    const Execution quiet{execution.threads, {}};
+    const Execution quiet = execution.quiet();
     for (const int number : numbers) {
         Triangles triangles(parts_of(high, inputs.high_groups, number));
         auto tree = numbers.size() == 1 ? BoxTree::build(triangles, execution, span) : BoxTree::build(triangles, quiet);
@@ -62,4 +62,4 @@ Result<RayGroups> RayGroups::make(const MeshPart& low, const std::vector<MeshPar
     return made;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

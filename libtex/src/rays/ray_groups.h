@@ -7,11 +7,11 @@
 #include <optional>
 #include <vector>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "rays/box_tree.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Parts of the high mesh that belong together.
 struct RayGroup {
@@ -44,4 +44,4 @@ private:
     std::optional<BoxTree> whole_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "rows/usable.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The picture at (x, y), from 0 to 1. Beyond the centres of its texels at the border it is constant.
@@ -93,4 +93,4 @@ Result<void> check_inputs(const TransferInputs& inputs, const MeshPart& low, std
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,12 +7,12 @@
 #include <array>
 #include <cstddef>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "rays/ray_casts.h"
 #include "rays/ray_directions.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class RayStarts {
 public:
@@ -40,4 +40,4 @@ private:
 // Errors: bad_option, if the inputs do not fit the meshes (transfer.h); bad_data, as check_part(cage).
 Result<void> check_inputs(const TransferInputs& inputs, const MeshPart& low, std::size_t high_parts, RayMode rays);
 
-}  // namespace tex
+}  // namespace tex::inline v1

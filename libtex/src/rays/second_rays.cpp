@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Of the largest coordinate. The place of a hit and the test of a triangle are exact to a few times 2^-52 of it.
@@ -80,4 +80,4 @@ void SecondRays::add(const HitPlace& place, std::uint32_t seed, Scratch& scratch
     if (looks_in_) add_thickness(place, seed, scratch, sums);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

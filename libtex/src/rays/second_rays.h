@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/transfer_options.h>
+#include <tex/mesh.h>
 
 #include "rays/box_tree.h"
 #include "rays/hemisphere.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A place on the high mesh. Both normals have unit length and point to the side from which second rays start.
 struct HitPlace {
@@ -55,4 +55,4 @@ private:
     double lift_;    // off the surface
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "mesh/frames.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Rays that are cast at once.
@@ -273,4 +273,4 @@ void TransferStrips::encode_texel(Strip& strip, int i, int j, std::size_t begin,
     put(result_.bent, i, j, encode(frame, bent).value_or(flat));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

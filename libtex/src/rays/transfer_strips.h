@@ -11,7 +11,7 @@
 #include <mutex>
 #include <vector>
 
-#include <tex/transfer.h>
+#include <tex/mesh.h>
 
 #include "mesh/coverage.h"
 #include "rays/high_surface.h"
@@ -21,7 +21,7 @@
 #include "rays/ray_starts.h"
 #include "rays/second_rays.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // In NormalMap::x, marks texels that have no normal yet.
 inline constexpr float kNoNormal = std::numeric_limits<float>::quiet_NaN();
@@ -119,4 +119,4 @@ private:
     SeenRange heights_, thickness_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

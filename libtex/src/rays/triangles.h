@@ -16,7 +16,7 @@
 
 #include "mesh/vector3.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Refers to the parts, which must pass check_part(). The triangles of all parts together are at most kMaxTriangles.
 class Triangles {
@@ -53,4 +53,4 @@ private:
     std::vector<std::size_t> first_ = {0};
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "rows/border.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The modified Bessel function of the first kind, order 0: the sum of ((x/2)^k / k!)^2.
@@ -171,4 +171,4 @@ void RowFilter::run(float* out) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,12 +5,12 @@
 
 #include <cstddef>
 
-#include <tex/image.h>
-#include <tex/mip_options.h>
+#include <tex/mip.h>
+#include <tex/types.h>
 
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // At least the taps of any filter: the widest reaches 3 texels of the smaller level to each side, which has at least a
 // third as many texels as the larger one; footprints of odd sizes may begin one texel apart.
@@ -62,4 +62,4 @@ private:
     WorkingVector<float> weights_;  // the weights that all texels share, if the size is even
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "rows/math.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Gradient gaussian_gradient(double sigma) {
@@ -126,4 +126,4 @@ void BakeRows::bake_exactly(int j, NormalRow out) {
     std::copy_n(end[2], rest, out.z + whole);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

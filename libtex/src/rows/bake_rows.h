@@ -6,13 +6,13 @@
 
 #include <algorithm>
 
-#include <tex/bake_options.h>
+#include <tex/bake.h>
 
 #include "kernels/bake.h"
 #include "memory/lent_memory.h"
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A gradient as one-sided weights: derivative[k - 1] is d at +k (at -k its negative), smoothing[k] is s at +k and -k.
 // The forward and central kernels are plain differences of two texels, so they have no weights.
@@ -76,4 +76,4 @@ private:
     WorkingVector<const float*> window_du_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "kernels/scale.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Rotation rotation_of(float degrees) {
     const double turn = std::fmod(static_cast<double>(degrees), 360.0);
@@ -156,4 +156,4 @@ void BlendRows::make(int j, NormalRow out) {
 
 void BlendRows::make_other(Plane<float> NormalMap::*plane, float* out) { base_.front().other(plane, out); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,12 +8,12 @@
 #include <optional>
 #include <vector>
 
-#include <tex/blend_options.h>
+#include <tex/blend.h>
 
 #include "kernels/normal_row.h"
 #include "rows/sampler.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Exact for right angles.
 struct Rotation {
@@ -78,4 +78,4 @@ private:
     std::vector<LayerRows> layers_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

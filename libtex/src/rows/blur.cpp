@@ -9,7 +9,7 @@
 #include "rows/border.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 WorkingVector<float> gaussian_weights(double sigma) {
     const int radius = static_cast<int>(std::ceil(3.0 * sigma));
@@ -63,4 +63,4 @@ void blur_down(PlaneView<const float> across, std::span<const float> weights, Wr
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

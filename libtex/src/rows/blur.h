@@ -5,12 +5,12 @@
 
 #include <span>
 
-#include <tex/height_field.h>
-#include <tex/image.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // g(k) / sum of g, g(k) = exp(-k^2 / (2 sigma^2)), |k| <= ceil(3 sigma): element k holds the weight of +k and of -k.
 // Precondition: sigma > 0.
@@ -25,4 +25,4 @@ void blur_across(PlaneView<const float> heights, std::span<const float> weights,
 void blur_down(PlaneView<const float> across, std::span<const float> weights, Wrap wrap_y, int begin, int end,
                Plane<float>& out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

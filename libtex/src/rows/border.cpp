@@ -9,7 +9,7 @@
 #include "kernels/bake.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 int mirrored(int i, int n) {
@@ -102,4 +102,4 @@ const float* HeightRows::fetch(int j) {
     return out;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,10 +6,10 @@
 
 #include <functional>
 
-#include <tex/height_field.h>
-#include <tex/image.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Returns row j of some data, 0 <= j < height. (One that captures at most two pointers allocates nothing.)
 using RowOf = std::function<const float*(int j)>;
@@ -79,4 +79,4 @@ constexpr int wrap_around(int i, int n) {
     return r < 0 ? r + n : r;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

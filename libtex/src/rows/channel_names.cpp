@@ -7,7 +7,7 @@
 #include <iterator>
 #include <optional>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Words that belong together. Those with three members come first.
@@ -197,4 +197,4 @@ std::string list_of_names(const std::vector<std::string>& names) {
     return list;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 [[nodiscard]] bool same_word(std::string_view a, std::string_view b);
 
@@ -61,4 +61,4 @@ struct NormalChannels {
 // The names as a list for messages: plain text, and not all if there are many.
 [[nodiscard]] std::string list_of_names(const std::vector<std::string>& names);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include "kernels/slopes.h"
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr float kLeastZ = 1e-6f;
@@ -76,4 +76,4 @@ double sum_of_squares(const float* values, int count) {
     return sum;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,11 +3,10 @@
 
 #pragma once
 
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/normal_map.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 class CurvatureRows {
 public:
@@ -36,4 +35,4 @@ private:
 // Added in the order of texels.
 double sum_of_squares(const float* values, int count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

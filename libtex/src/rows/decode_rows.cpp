@@ -14,7 +14,7 @@
 #include "blocks/extent.h"
 #include "kernels/samples.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Texels of BC6H and BC7 are decoded to codes, which become floats as those of formats without blocks.
@@ -96,4 +96,4 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,11 +5,11 @@
 
 #include <cstddef>
 
-#include <tex/texture.h>
+#include <tex/format.h>
 
 #include "kernels/decode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes the blocks that cover `width` texels: as many rows as a block has. Row k of a channel is at channel + k *
 // stride, and needs room for whole blocks of 4x4 texels (a row of a Plane has it). Throws std::bad_alloc.
@@ -26,4 +26,4 @@ void decode_row_of_blocks(Format format, const std::byte* blocks, int width, con
 // strip, with the width rounded up to whole blocks.
 void decode_strip(Format format, const Level& level, int strip, const ChannelRows& rows, std::ptrdiff_t stride);
 
-}  // namespace tex
+}  // namespace tex::inline v1

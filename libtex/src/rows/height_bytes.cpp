@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Metres. No place on the Earth is lower or higher.
@@ -37,4 +37,4 @@ std::int64_t height_bytes_row(const ColorRow& in, HeightChannel channel, bool ha
     return implausible;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

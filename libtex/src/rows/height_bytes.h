@@ -5,14 +5,14 @@
 
 #include <cstdint>
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include "kernels/height_field.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Writes `count` heights. `has_numbers`: the values are 0 to 255, not 0 to 1. Returns the implausible ones
 // (HeightReport). Precondition: `channel` is terrain_rgb, terrarium or rg16.
 std::int64_t height_bytes_row(const ColorRow& in, HeightChannel channel, bool has_numbers, int count, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,10 +9,10 @@
 
 #include "kernels/height_field.h"
 #include "rows/channel_names.h"
-#include "rows/color.h"
 #include "rows/height_bytes.h"
+#include "rows/linear_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The greatest HeightOptions::blur_sigma.
@@ -207,4 +207,4 @@ Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, 
             ErrorDetail::missing_heights};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

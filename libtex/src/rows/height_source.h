@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 class LinearRows;
 
@@ -70,4 +70,4 @@ HeightCounts take_heights(const Image& image, const HeightSource& source, const 
 // Says in a sentence what is wrong: `invalid` texels of the picture are invalid, the first one at (column, row).
 Error invalid_heights(std::int64_t invalid, int column, int row, Extent extent, const HeightOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

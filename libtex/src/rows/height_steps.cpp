@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kSlots = 4 * kMostCodes;
@@ -99,4 +99,4 @@ std::int64_t count_terraces(const float* above, const float* row, const float* b
     return found;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The most steps from the lowest height to the highest. (Finer ones are no terraces: 12 bits are smooth.)
 inline constexpr int kMostCodes = 4096;
@@ -37,10 +37,10 @@ struct HeightSteps {
     int codes = 0;
 };
 
-// The steps that all of `sorted` lie on, as deband.h describes them; nullopt if there are none.
+// The steps that all of `sorted` lie on, as height.h describes them; nullopt if there are none.
 std::optional<HeightSteps> find_steps(std::span<const float> sorted);
 
 // Counts the texels of a row that have the height of both neighbours along x or y. `above` and `below` may be null.
 std::int64_t count_terraces(const float* above, const float* row, const float* below, int count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace tex::math {
+namespace tex::inline v1::math {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -203,4 +203,4 @@ double sinc(double x) {
     return std::floor(n * 0.5) * 2.0 == n ? value : -value;
 }
 
-}  // namespace tex::math
+}  // namespace tex::inline v1::math

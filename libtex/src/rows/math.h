@@ -20,7 +20,7 @@
 
 #pragma once
 
-namespace tex::math {
+namespace tex::inline v1::math {
 
 inline constexpr double kPi = 0x1.921fb54442d18p+1;
 
@@ -36,4 +36,4 @@ double pow(double x, double y);
 // sin(pi x) / (pi x), which is 1 at 0 and exactly 0 at the other integers.
 double sinc(double x);
 
-}  // namespace tex::math
+}  // namespace tex::inline v1::math

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <limits>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "kernels/mip.h"
 #include "rows/border.h"
 #include "rows/whole_vectors.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 int first_level(const MipOptions& options, Extent base) {
     int level = 0;
@@ -130,4 +130,4 @@ void MipRows::make_exactly(const float* const* rows, int j, float* out) {
     std::copy_n(row_.row(0), filter_.to.width, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,13 +5,13 @@
 
 #include <optional>
 
-#include <tex/mip_options.h>
-#include <tex/normal_map.h>
+#include <tex/mip.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 #include "rows/axis_filter.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The first level that build_mip_chain() keeps: 0, unless the base level is larger than options.max_side.
 int first_level(const MipOptions& options, Extent base);
@@ -99,4 +99,4 @@ private:
     Plane<float> row_;  // for make_exactly()
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "kernels/roughness.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Turns gloss into roughness, or back.
@@ -64,4 +64,4 @@ void lengthen(const VectorRow& unit, const float* values, int width, const Norma
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

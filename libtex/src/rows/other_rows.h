@@ -4,12 +4,12 @@
 #pragma once
 
 #include <tex/format.h>
-#include <tex/mip_options.h>
-#include <tex/normal_map.h>
+#include <tex/mip.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The places of data beside normals, in the order of their planes in strips (stream/stage.h).
 struct OtherPlace {
@@ -51,4 +51,4 @@ void values_of_lengths(const float* x, const float* y, const float* z, bool is_u
 // Gives unit vectors the lengths that hold these values.
 void lengthen(const VectorRow& unit, const float* values, int width, const NormalRow& out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include "kernels/pack.h"
 #include "rows/other_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The rows of a normal map as the channels of a format.
@@ -164,4 +164,4 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
     pack_rows_of_texels(rows, info, begin, end, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

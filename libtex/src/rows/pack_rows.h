@@ -5,14 +5,14 @@
 
 #include <cstddef>
 
-#include <tex/normal_map.h>
-#include <tex/pack_options.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 #include "kernels/pack.h"
 #include "rows/rdo_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Packs rows [begin, end) of a level, or of a strip of one, that is `height` rows high (at most the height of `map`).
 // `begin` is a multiple of the height of a block. If blocks are encoded, `end` is such a multiple too, or equals the
@@ -39,4 +39,4 @@ std::size_t pack_texels(const FormatInfo& format, const PackChannel* channels, i
 void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, const float* blue, const float* alpha,
                    PackChannel out[4]);
 
-}  // namespace tex
+}  // namespace tex::inline v1

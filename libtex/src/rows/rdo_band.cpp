@@ -11,7 +11,7 @@
 #include "kernels/copy_search.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::ptrdiff_t kBandBlockBytes = 16;
@@ -131,4 +131,4 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const
     return band;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

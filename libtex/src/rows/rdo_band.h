@@ -7,11 +7,11 @@
 #include <functional>
 #include <vector>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "kernels/encode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The normals of a block, as its texels store them: y is negated if the texture's y points down.
 struct RdoBlock {
@@ -46,4 +46,4 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const
 // The angles of 16 bytes as block `index`.
 RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kTarget = 0.99;                          // of the growth that is allowed
@@ -117,4 +117,4 @@ RdoGrowth RdoBudget::better_plan(double growth) {
     return better;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

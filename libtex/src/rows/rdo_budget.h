@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Passes take blocks in runs; a sample takes one of `stride` runs.
 inline constexpr int kRdoRun = 128;
@@ -83,4 +83,4 @@ private:
     std::vector<double> growths_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

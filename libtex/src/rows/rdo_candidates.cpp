@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 
 void RdoCandidates::add(const std::byte* half, int distance, int literals) {
     assert(count_ < kMost);
@@ -55,4 +55,4 @@ void RdoCandidates::copy_values(int index, float values[16]) const {
     for (std::ptrdiff_t k = 0; k < 16; ++k) values[k] = column[k * kStride];
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

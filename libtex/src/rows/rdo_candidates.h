@@ -8,7 +8,7 @@
 
 #include "blocks/half_block.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct RdoCandidate {
     std::byte half[kHalfBytes];
@@ -60,4 +60,4 @@ private:
     std::array<float, std::size_t{16} * kStride> values_{};
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

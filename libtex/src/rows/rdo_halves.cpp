@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tex {
+namespace tex::inline v1 {
 
 RdoHalves::RdoHalves(HalfKind kind, std::size_t most) : kind_(kind) {
     constexpr std::size_t kSlack = 32;  // kernels read whole vectors
@@ -37,4 +37,4 @@ CopyTable RdoHalves::from(std::size_t first) const {
     return table;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

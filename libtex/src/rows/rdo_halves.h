@@ -10,7 +10,7 @@
 #include "blocks/half_block.h"
 #include "kernels/copy_search.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Grows by a half at a time.
 class RdoHalves {
@@ -28,4 +28,4 @@ private:
     std::vector<CopyHalf> halves_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "rows/rdo_rate.h"
 #include "rows/rdo_sources.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr float kDegreesOfChord = 57.29577951308232f;  // for short chords
@@ -270,4 +270,4 @@ RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCo
     return Pass(band, literals).sample(lambda, stride);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,13 +18,13 @@
 #include <cstddef>
 #include <vector>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "rows/rdo_band.h"
 #include "rows/rdo_budget.h"
 #include "rows/rdo_rate.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct RdoResult {
     std::vector<std::byte> blocks;
@@ -46,4 +46,4 @@ struct RdoSample {
 };
 RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // What zstd -19 writes for a match: the codes of its lengths and of the class of its distance, and the bits of the
@@ -51,4 +51,4 @@ void RdoMatches::use(int distance) {
     last_[0] = distance;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

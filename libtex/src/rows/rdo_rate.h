@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // How often each byte is a literal.
 using ByteCounts = std::array<std::int64_t, 256>;
@@ -34,4 +34,4 @@ private:
     int open_ = 0;  // the distance of the match that ends where the next half begins
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "rows/rdo_pass.h"
 #include "rows/zstd_size.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr double kMillionths = 1e6;
@@ -167,4 +167,4 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, cons
                 std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,11 +9,11 @@
 #include <mutex>
 #include <vector>
 
-#include <tex/pack_options.h>
+#include <tex/pack.h>
 
 #include "kernels/encode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Collects what bands report, from several threads at once. The report does not depend on their order.
 class RdoTally {
@@ -59,4 +59,4 @@ private:
 void optimise_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                    std::byte* blocks, RdoTally* tally);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "rows/rdo_rate.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 RdoSources::RdoSources(Encoding encoding, int window, std::size_t most) : reach_(std::max(1, window / 16)) {
     for (int h = 0; h < 2; ++h) halves_.emplace_back(half_kind(encoding, h), most);
@@ -65,4 +65,4 @@ void RdoSources::find(const RdoSearcher& block) {
     for (const CheapCopy& copy : found.pairs) pairs_.push_back({2 * (first + copy.at), Copied{copy.copied}});
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

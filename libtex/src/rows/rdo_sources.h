@@ -14,7 +14,7 @@
 #include "kernels/copy_search.h"
 #include "rows/rdo_halves.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Half number `at` of the band, counted 2 * block + channel.
 struct RdoSource {
@@ -60,4 +60,4 @@ private:
     std::vector<RdoSource> pairs_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

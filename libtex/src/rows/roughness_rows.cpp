@@ -12,7 +12,7 @@
 
 #include "kernels/encode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The rows of a row of blocks as 2 roughness - 1, because encoders take components of vectors.
@@ -91,4 +91,4 @@ void pack_roughness_rows(const Plane<float>& level, int height, Format format, E
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Interpolates; the result is exactly a at 0 and b at 1.
@@ -107,4 +107,4 @@ void Sampler::sample(const Plane<float>& plane, float* out) {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,12 +5,12 @@
 
 #include <cstdint>
 
-#include <tex/height_field.h>
-#include <tex/image.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "kernels/bilinear.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Maps a point (x, y) of the result, in texels from its upper left corner, to a place in the source, in source widths
 // and heights from its upper left corner: (u, v) = (u0 + ux x + uy y, v0 + vx x + vy y).
@@ -92,4 +92,4 @@ private:
     Plane<std::int32_t> runs_;  // of the columns, if rows are parallel
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

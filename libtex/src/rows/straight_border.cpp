@@ -7,7 +7,7 @@
 #include "kernels/deband.h"
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 void continue_ends(float* row, int width, Wrap wrap) {
     const float left = row[0] - row[std::min(1, width - 1)];
@@ -32,4 +32,4 @@ void straight_row(const Plane<float>& plane, Wrap wrap_y, int j, float* out) {
     extrapolate_row(plane.row(edge), plane.row(inner), distance, width, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

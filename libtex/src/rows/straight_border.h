@@ -3,10 +3,10 @@
 
 #pragma once
 
-#include <tex/height_field.h>
-#include <tex/image.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The texels beyond each end of a row.
 inline constexpr int kStraightApron = 2;
@@ -31,4 +31,4 @@ void continue_ends(float* row, int width, Wrap wrap);
 // Writes row j of `plane`, from kStraightApron rows above it to as many below it, without its ends.
 void straight_row(const Plane<float>& plane, Wrap wrap_y, int j, float* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <iterator>
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "blocks/astc_decode.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr float kConstant = 8.0f / 255.0f;  // a BC1 block may miss a constant by this much
@@ -94,4 +94,4 @@ Swizzle SwizzleEvidence::layout() const {
     return named("rgb");
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

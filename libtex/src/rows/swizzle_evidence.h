@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 
-#include <tex/image.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 class SwizzleEvidence {
 public:
@@ -53,4 +53,4 @@ private:
     std::int64_t count_ = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
@@ -87,4 +87,4 @@ RangeEvidence weigh_row(const float* x, const float* y, const float* z, int coun
     return evidence;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

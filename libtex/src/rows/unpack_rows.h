@@ -6,13 +6,12 @@
 #include <optional>
 #include <string>
 
-#include <tex/image.h>
-#include <tex/result.h>
-#include <tex/unpack_options.h>
+#include <tex/pack.h>
+#include <tex/types.h>
 
 #include "kernels/unpack.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The channels, of four, that hold x, y and z; -1 if none does.
 struct Sources {
@@ -58,4 +57,4 @@ struct RangeEvidence {
 // z may be null.
 RangeEvidence weigh_row(const float* x, const float* y, const float* z, int count);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 
 #include "rows/other_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Error wrong_level(std::size_t level) {
@@ -63,4 +63,4 @@ Result<void> check_usable(const Texture& texture) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

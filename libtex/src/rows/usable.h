@@ -5,13 +5,10 @@
 
 #include <string_view>
 
-#include <tex/image.h>
-#include <tex/mip_chain.h>
-#include <tex/normal_map.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The Error for an option out of its range: "gaussian_sigma: must be above 0 and at most 64".
 [[nodiscard]] Error bad_option(std::string_view reason);
@@ -26,4 +23,4 @@ namespace tex {
 // The same, and each level has level_bytes() bytes.
 [[nodiscard]] Result<void> check_usable(const Texture& texture);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The floats of the widest vector (kRowAlignment).
 inline constexpr int kWhole = 16;
@@ -32,4 +32,4 @@ void in_whole_vectors(int width, const float* const (&from)[kIn], float* const (
     for (std::size_t k = 0; k < kOut; ++k) std::copy_n(out[k], rest, to[k] + whole);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kZTexels = 256;  // of a row, about
@@ -59,4 +59,4 @@ bool ZEvidence::is_something_else() const {
     return both < kFollows * std::sqrt(std::max(stored, 0.0) * rebuilt) || !(stored > 0.0);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

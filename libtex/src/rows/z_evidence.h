@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The distance between the rows that are looked at, about 64 of them.
 [[nodiscard]] inline int z_step(int height) { return std::max(1, height / 64); }
@@ -28,4 +28,4 @@ private:
     std::int64_t z_ = 0, rebuilt_ = 0, z_square_ = 0, rebuilt_square_ = 0, product_ = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 
 #include <zstd.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::size_t zstd_size(const std::vector<std::byte>& bytes, int level) {
     std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
@@ -15,4 +15,4 @@ std::size_t zstd_size(const std::vector<std::byte>& bytes, int level) {
     return size;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

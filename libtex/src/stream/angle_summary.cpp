@@ -12,7 +12,7 @@
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // This many sums run side by side, so that they do not wait for each other. The order is the same on every processor.
@@ -42,7 +42,7 @@ Result<Bins> count_bins(Extent extent, std::size_t size, const Execution& execut
     const int height = extent.height;
     const int rows = (height + parts - 1) / parts;
     std::vector<Bins> counted(static_cast<std::size_t>((height + rows - 1) / rows));
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const auto body = [&](int begin, int end) { counted[static_cast<std::size_t>(begin / rows)] = count(begin, end); };
     if (auto done = parallel_for(silent, height, rows, body); !done) return done.error();
     Bins all(size);
@@ -155,4 +155,4 @@ Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::ve
     return error;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

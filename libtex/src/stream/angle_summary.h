@@ -6,12 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/angular_error.h>
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Of one row.
 struct AngleSums {
@@ -28,4 +25,4 @@ AngleSums sum_angles(const float* degrees, int count);
 [[nodiscard]] Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::vector<AngleSums>& rows,
                                                     std::int64_t left_out, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "rows/mip_rows.h"
 #include "stream/given_others.h"
@@ -18,7 +18,7 @@
 #include "stream/usual_slope.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, Container container,
                                    const BakeFileOptions& options, const Execution& execution,
@@ -81,4 +81,4 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     return report;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

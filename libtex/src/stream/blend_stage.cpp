@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::optional<RowsInStep> rows_in_step(Extent source, Extent result, const UvMap& map, Wrap wrap_x, Wrap wrap_y) {
     constexpr int kMostRows = 4;
@@ -56,4 +56,4 @@ Result<void> BlendStage::make(Strip& strip) {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

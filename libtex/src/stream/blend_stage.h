@@ -9,7 +9,7 @@
 #include "rows/blend_rows.h"
 #include "stream/flow.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The rows of a map that a result of the same extent needs: row j of the result needs rows j - behind to j + ahead of
 // the map, or some of its first `head` rows.
@@ -49,4 +49,4 @@ private:
     Pool<BlendRows> rows_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "rows/mip_rows.h"
 #include "stream/blending.h"
@@ -12,7 +12,7 @@
 #include "stream/level_stage.h"
 #include "stream/targets.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output, Container container,
                                      const BlendFileOptions& options, const Execution& execution,
@@ -63,4 +63,4 @@ Result<BlendFileReport> blend_stream(const std::string& input, const std::string
     return blend_stream(base, output, container, options, execution, sizes);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "stream/flow.h"
 #include "stream/map_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Does what blend_file() does. May throw std::bad_alloc.
 Result<BlendFileReport> blend_stream(const std::string& input, const std::string& output, Container container,
@@ -22,4 +22,4 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes = {});
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include "stream/normal_source.h"
 #include "stream/placed_map.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Whether the rows of a detail can keep in step, as far as that can be decided without its extent.
@@ -64,7 +64,7 @@ Result<void> Blending::open_detail(Input& input, const LayerFile& layer, const L
 }
 
 Result<void> Blending::open(const Execution& execution) {
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (Result<void> opened = open_base(silent); !opened) return opened;
     for (const LayerFile& layer : options_.layers) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
@@ -134,4 +134,4 @@ std::vector<SourceInfo> Blending::details() const {
     return details;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,7 +17,7 @@
 #include "stream/settled_map.h"
 #include "stream/shared_maps.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class Blending {
 public:
@@ -77,4 +77,4 @@ private:
     std::optional<PlacedMaps> maps_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

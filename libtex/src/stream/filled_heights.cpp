@@ -10,7 +10,7 @@
 #include "surface/debander.h"
 #include "surface/nearest.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Rows of a plane in memory.
@@ -83,4 +83,4 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
     return std::unique_ptr<RowSource>(std::make_unique<PlaneRows>(std::move(heights)));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

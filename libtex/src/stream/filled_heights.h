@@ -8,14 +8,13 @@
 #include <memory>
 #include <string>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/row_source.h"
-#include "rows/color.h"
 #include "rows/height_source.h"
+#include "rows/linear_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Reads the one-channel heights of the picture `rows` as `source` and `options` say, debands and fills them. `linear`
 // may be null; messages name the picture `input`. Adds what it finds to `counts` and `deband`. Precondition: no row has
@@ -25,4 +24,4 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
                                                 const HeightOptions& options, const LinearRows* linear,
                                                 const Execution& execution, HeightCounts& counts, DebandReport& deband);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include <tex/unpack.h>
+#include <tex/pack.h>
 
 #include "checks/background.h"
 #include "formats/row_source.h"
@@ -18,7 +18,7 @@
 #include "stream/source_stage.h"
 #include "surface/nearest.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Rows of decoded channels in memory, which must outlive them.
@@ -76,7 +76,7 @@ Result<void> fill_holes(const Stored& stored, const Background& background, Imag
 class FilledMap final : public MapSource {
 public:
     FilledMap(MapSource& map, const SourceOptions& options, const Execution& execution)
-        : map_(map), options_(options), execution_{execution.threads, {}} {}
+        : map_(map), options_(options), execution_(execution.quiet()) {}
 
     [[nodiscard]] const std::string& path() const override { return map_.path(); }
     Result<void> open() override {
@@ -127,7 +127,7 @@ private:
 
 Result<Image> decode_filled(Texture& texture, const Swizzle& swizzle, const SourceOptions& options,
                             const Execution& execution) {
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     Result<Image> image = decode(texture, 0, silent);
     if (!image) return image;
     const Stored stored{&*image, swizzle,
@@ -148,4 +148,4 @@ std::unique_ptr<MapSource> filled(MapSource& map, const SourceOptions& options, 
     return std::make_unique<FilledMap>(map, options, execution);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,13 +4,12 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/result.h>
-#include <tex/source.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "formats/texture_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The channels of the base level, as decode() makes them. Where find_background() finds background, or texels mixed
 // with it, x, y and z become those of the nearest other texel. A map without background stays as it is, and gets a
@@ -18,4 +17,4 @@ namespace tex {
 Result<Image> decode_filled(Texture& texture, const Swizzle& swizzle, const SourceOptions& options,
                             const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -22,7 +22,7 @@
 #include "threads/guard.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class FlowRun {
 public:
@@ -73,6 +73,7 @@ bool is_worth_threads(const std::vector<std::unique_ptr<Stage>>& stages, std::in
 }
 
 int threads_of(const Execution& execution) {
+    if (execution.parallel) return thread_count(execution);
     const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     return std::min(thread_count(execution), static_cast<int>(allowed));
 }
@@ -218,7 +219,12 @@ void FlowRun::report(std::unique_lock<std::mutex>& lock) {
 Result<void> FlowRun::run() {
     try {
         if (threads_ > 1) {
-            fork_join(threads_, threads_, [this](int) { work(); });
+            const auto worker = [this](int) { work(); };
+            if (execution_.parallel) {
+                execution_.parallel(threads_, worker);
+            } else {
+                fork_join(threads_, threads_, worker);
+            }
         } else {
             work();
         }
@@ -238,4 +244,4 @@ Result<void> Flow::run(const Execution& execution, const StreamSizes& sizes) {
     return FlowRun(*this, execution, sizes).run();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,12 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "stream/stage.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // How pictures are divided. The bytes of the outputs do not depend on it.
 struct StreamSizes {
@@ -58,4 +57,4 @@ private:
     std::atomic<bool> only_counts_{false};
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

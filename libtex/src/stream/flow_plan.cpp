@@ -6,7 +6,7 @@
 
 #include "blocks/extent.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 int Stage::choose_strip_rows(int texels, int together) const {
     const std::int64_t base_width = static_cast<std::int64_t>(extent_.width) << level_;
@@ -147,4 +147,4 @@ std::size_t FlowPlan::line_of(int task) const {
     return static_cast<std::size_t>(after - lines.begin()) - 1;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

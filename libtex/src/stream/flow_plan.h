@@ -17,7 +17,7 @@
 
 #include "stream/stage.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class FlowPlan {
 public:
@@ -83,4 +83,4 @@ private:
     std::vector<int> reads_of_;  // for each task: how many strips must have been read before it can be done
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "rows/usable.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Where a place's data come from.
@@ -140,4 +140,4 @@ Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding enco
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

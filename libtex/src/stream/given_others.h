@@ -11,7 +11,7 @@
 #include "stream/flow.h"
 #include "stream/targets.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 [[nodiscard]] OtherPlanes planes_given(const OtherInputs& inputs);
 
@@ -37,4 +37,4 @@ private:
     NormalMap map_;  // its other data; what is empty comes with the stage of normals
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "stream/source_stage.h"
 #include "stream/terrain_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Rows of heights. If the last rows had to be read before all others, they are a stage of their own.
@@ -295,4 +295,4 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
     return {&flow.add<BakeStage>(rows, gradient, head, heights.window, beside), head};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "stream/flow.h"
 #include "stream/open_heights.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The rows of normals, and the strength with which they are baked.
 struct BakedRows {
@@ -27,4 +27,4 @@ struct BakedRows {
 BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const BakeFileOptions& options,
                    const Gradient& gradient);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "formats/claims.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Opens the picture again. Errors: those of opening; io if the picture has changed.
@@ -57,4 +57,4 @@ Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const
     return image;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,14 +6,13 @@
 
 #include <memory>
 
-#include <tex/execution.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Returns the last `count` rows as an image of that height or a little more. `rows` is the picture in `file`. No row of
 // it has been decoded before the call, and none counts as decoded after it: if rows cannot be read out of turn (as in a
@@ -22,4 +21,4 @@ namespace tex {
 Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const ReadOptions& options, int count,
                         const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

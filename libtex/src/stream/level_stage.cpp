@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "kernels/mip.h"
 #include "kernels/roughness.h"
@@ -14,7 +14,7 @@
 #include "rows/mip_rows.h"
 #include "rows/other_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A plane of another stage.
@@ -239,4 +239,4 @@ void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, R
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,13 +7,12 @@
 #include <functional>
 
 #include <tex/mip.h>
-#include <tex/roughness.h>
 
 #include "stream/flow.h"
 #include "stream/own_roughness.h"
 #include "stream/targets.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Called with rows that have been written, from any thread.
 using WatchRows = std::function<void(const LevelRows& rows)>;
@@ -35,4 +34,4 @@ void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targ
 void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
                    const OwnRoughness& own, Targets& targets);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/codecs.h"
 #include "formats/file_layout.h"
@@ -23,7 +23,7 @@
 #include "stream/texture_writer.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Writes pictures, which take their rows one after the other. Strips that come too early are packed and wait.
@@ -226,4 +226,4 @@ Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, 
     return std::unique_ptr<LevelWriter>(std::move(texture));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/container.h>
+#include <tex/file.h>
 #include <tex/pack.h>
 #include <tex/pipeline.h>
 
@@ -20,7 +20,7 @@
 #include "rows/other_rows.h"
 #include "rows/rdo_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class Content { normals, roughness };
 
@@ -75,4 +75,4 @@ public:
 // Whether rows may be written in any order: DDS, KTX2.
 [[nodiscard]] bool takes_any_order(Container container);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -17,7 +17,7 @@
 #include "stream/targets.h"
 #include "stream/usual_slope.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Keeps the rows of another stage.
@@ -64,14 +64,13 @@ public:
             NormalMap& map = chain.levels.emplace_back(extent(k));
             if (beside_.alpha) map.alpha = Plane<float>(extent(k));
             flow.add<KeepStage>(add_normals(flow, k), map);
-            if (Result<void> made = flow.run({execution.threads, {}}); !made) return made.error();
+            if (Result<void> made = flow.run(execution.quiet()); !made) return made.error();
         }
         const Encoding encoding = beside_.alpha ? Encoding::rgba32f : Encoding::float_;
-        Result<Texture> texture = pack(chain, {encoding, head_.y_axis}, {execution.threads, {}});
-        if (!texture) return texture;
-        std::vector<Level> levels = std::move(texture->levels);
-        *texture = head_;
-        texture->levels = std::move(levels);
+        Result<PackedTexture> packed = pack(chain, {encoding, head_.y_axis}, execution.quiet());
+        if (!packed) return packed.error();
+        Texture texture = head_;
+        texture.levels = std::move(packed->levels);
         return texture;
     }
     Error after_all_rows(const Error& error) final { return error; }
@@ -134,7 +133,7 @@ public:
             if (!measured) return measured.error().of(input_);
             options_ = std::move(*measured);
         }
-        const Execution silent{execution_.threads, {}};
+        const Execution silent = execution_.quiet();
         Result<Heights> heights = open_heights(*file_, RowOrder::from_the_top, options_, gradient_, silent);
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
@@ -173,7 +172,7 @@ public:
 
     [[nodiscard]] const std::string& path() const override { return before_->path(); }
     Result<void> open() override {
-        if (Result<void> opened = map_.open({execution_.threads, {}}); !opened) return opened;
+        if (Result<void> opened = map_.open(execution_.quiet()); !opened) return opened;
         const int held = map_.map().levels();
         first_ = options_.level.value_or(0);
         levels_ = options_.level ? 1 : held;
@@ -252,4 +251,4 @@ std::unique_ptr<MapSource> made_map(const std::string& input, const std::vector<
     return map;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

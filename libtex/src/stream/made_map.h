@@ -9,14 +9,13 @@
 #include <vector>
 
 #include <tex/pipeline.h>
-#include <tex/steps.h>
 
 #include "stream/map_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The map that `steps` make of the file `input`, all of which must outlive the map. Precondition: there is a step.
 std::unique_ptr<MapSource> made_map(const std::string& input, const std::vector<Step>& steps, std::size_t count,
                                     const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

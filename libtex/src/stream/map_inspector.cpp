@@ -9,7 +9,7 @@
 
 #include "checks/curl.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kWindow = 128;
@@ -103,4 +103,4 @@ void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& inf
     inspector->report(info);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,13 +7,13 @@
 #include <optional>
 #include <vector>
 
-#include <tex/normal_map.h>
-#include <tex/source.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "checks/stored.h"
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Looks at parts of a map, at most 2^18 texels, and keeps their slopes if it measures y.
 class MapInspector {
@@ -49,4 +49,4 @@ void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& inf
 [[nodiscard]] std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info,
                                                         Extent extent);
 
-}  // namespace tex
+}  // namespace tex::inline v1

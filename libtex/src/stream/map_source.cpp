@@ -7,7 +7,7 @@
 #include "formats/picture.h"
 #include "stream/source_stage.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A stream is read into memory, because the map may have to be read twice.
 Result<void> FileMap::open_file() {
@@ -76,4 +76,4 @@ Result<Texture> FileMap::read(bool base_only, const Execution&) {
 
 Error FileMap::after_all_rows(const Error& error) { return tex::after_all_rows(rows(0), path_, error); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

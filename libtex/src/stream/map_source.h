@@ -8,15 +8,14 @@
 #include <string>
 #include <vector>
 
+#include <tex/file.h>
 #include <tex/pipeline.h>
-#include <tex/source.h>
-#include <tex/steps.h>
 
 #include "files/input_file.h"
 #include "formats/texture_rows.h"
 #include "stream/unpack_stage.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class MapSource {
 public:
@@ -85,4 +84,4 @@ private:
 // own. `map` must outlive it.
 std::unique_ptr<MapSource> filled(MapSource& map, const SourceOptions& options, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,12 +5,12 @@
 
 #include <string>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 [[nodiscard]] inline Error undecided_y(const std::string& path) {
     return {ErrorCode::bad_data, path, "which way green points does not show clearly in the texels"};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

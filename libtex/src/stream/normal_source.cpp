@@ -13,7 +13,7 @@
 #include "stream/other_channels.h"
 #include "stream/source_layout.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Turns normals that were unpacked with y up, whatever it is, so that their y points up.
@@ -39,7 +39,7 @@ Result<void> look_at_others(const Texture& texture, bool lengths, Source& source
     if (!sources) return sources.error();
     OtherChannels others(texture, texture.extent(), *sources, lengths);
     if (others.empty()) return {};
-    const Result<Image> image = decode(texture, 0, {execution.threads, {}});
+    const Result<Image> image = decode(texture, 0, execution.quiet());
     if (!image) return image.error();
     const NormalMap& map = source.chain.levels.front();
     for (int j = 0; j < map.extent().height; ++j) {
@@ -100,4 +100,4 @@ Result<Source> read_normals(MapSource& map, const SourceOptions& options, bool b
     return source;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

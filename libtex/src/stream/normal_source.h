@@ -3,13 +3,13 @@
 
 #pragma once
 
-#include <tex/source.h>
+#include <tex/file.h>
 
 #include "stream/map_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Does what read_normals(path) does, for a map from any source. May throw std::bad_alloc.
 Result<Source> read_normals(MapSource& map, const SourceOptions& options, bool base_only, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

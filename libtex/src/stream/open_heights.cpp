@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "color/color.h"
 #include "stream/filled_heights.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
@@ -13,15 +14,14 @@
 #include "stream/terrain_rows.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Errors: those of an option that does not fit the picture.
 Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     const RowSource& rows = *heights.rows;
     if (!options.color.space.empty()) {
-        auto linear =
-            LinearRows::make(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
+        auto linear = linear_rows(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
         if (!linear) return linear.error();
         heights.linear = std::move(*linear);
     }
@@ -126,4 +126,4 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
     return heights;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

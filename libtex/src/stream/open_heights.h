@@ -11,10 +11,10 @@
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "rows/bake_rows.h"
-#include "rows/color.h"
 #include "rows/height_source.h"
+#include "rows/linear_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // What the rows of a tile of a terrain are: the tile, and beside it `left` columns and above it `top` rows of its
 // neighbours, and as many on the other sides. A side without a neighbour has none: there the window ends with the tile,
@@ -59,4 +59,4 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
 // The strength and the borders of a height field of this extent, whose file may state a strength.
 HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated);
 
-}  // namespace tex
+}  // namespace tex::inline v1

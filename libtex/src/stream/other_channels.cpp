@@ -9,7 +9,7 @@
 
 #include "rows/other_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr float kVaries = 1.5f / 255.0f;
@@ -108,4 +108,4 @@ std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlan
     return channels;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,13 +7,13 @@
 #include <mutex>
 #include <vector>
 
-#include <tex/source.h>
+#include <tex/file.h>
 
 #include "kernels/normal_row.h"
 #include "rows/unpack_rows.h"
 #include "rows/z_evidence.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class OtherChannels {
 public:
@@ -56,4 +56,4 @@ private:
 // The channels without these.
 [[nodiscard]] std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlanes accounted_for);
 
-}  // namespace tex
+}  // namespace tex::inline v1

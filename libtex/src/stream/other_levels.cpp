@@ -4,12 +4,12 @@
 
 #include <utility>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "rows/mip_rows.h"
 #include "rows/other_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Filters rows [begin, end) of a plane of the next level.
@@ -32,7 +32,7 @@ Result<void> add_other(MipChain& chain, Plane<float> NormalMap::*plane, OtherKin
     const auto begin_with = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) values_to_average(kind, values.row(j), extent.width, averages.row(j));
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (Result<void> done = parallel_for(silent, extent.height, rows_per_piece(extent), begin_with); !done) return done;
     auto levels = smaller_levels(base, std::move(averages), kind, options.roughness, options,
                                  static_cast<int>(chain.levels.size()), silent, {});
@@ -84,4 +84,4 @@ Result<void> add_others(MipChain& chain, const MipOptions& options, const Execut
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

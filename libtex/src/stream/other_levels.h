@@ -5,13 +5,12 @@
 
 #include <vector>
 
-#include <tex/execution.h>
 #include <tex/mip.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Returns levels 1 to count - 1 of data that values_to_average() has made ready. `normals` is their base level, which
 // matters to kinds that follow it. Errors: out_of_memory, cancelled. May throw std::bad_alloc.
@@ -22,4 +21,4 @@ Result<std::vector<Plane<float>>> smaller_levels(const NormalMap& normals, Plane
 // Adds the data beside the base level of a chain to its smaller levels. Errors and exceptions: as smaller_levels().
 Result<void> add_others(MipChain& chain, const MipOptions& options, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

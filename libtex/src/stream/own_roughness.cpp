@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "kernels/roughness.h"
 #include "rows/mip_rows.h"
 #include "rows/sampler.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 int strip_rows(Extent extent) { return std::max(1, (1 << 15) / extent.width); }
@@ -95,4 +95,4 @@ void OwnRoughness::row(int j, float* roughness, float* alpha2) const {
     roughness_of_alpha2(alpha2, width_, roughness);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

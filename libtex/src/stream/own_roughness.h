@@ -3,14 +3,12 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/image.h>
 #include <tex/mip.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class OwnRoughness {
 public:
@@ -34,4 +32,4 @@ private:
     Plane<float> alpha2_;                // or the resampled alpha^2 of another map
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "rows/mip_rows.h"
 #include "rows/usable.h"
@@ -18,7 +18,7 @@
 #include "stream/targets.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct ApartFile {
@@ -198,7 +198,7 @@ Result<void> PackRun::find_own_roughness() {
     Result<Plane<float>> map = file.map();
     if (!map) return map.error();
     roughness_map_ = std::move(*map);
-    Result<OwnRoughness> own = OwnRoughness::of(roughness_map_, extent(first_), *mip_, {execution_.threads, {}});
+    Result<OwnRoughness> own = OwnRoughness::of(roughness_map_, extent(first_), *mip_, execution_.quiet());
     if (!own) return own.error();
     own_ = std::move(*own);
     return {};
@@ -282,4 +282,4 @@ Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, C
     return pack_stream(map, output, container, options, execution, sizes);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

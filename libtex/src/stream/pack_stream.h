@@ -11,7 +11,7 @@
 #include "stream/flow.h"
 #include "stream/map_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Does what pack_file() does, for a file that is open already and has not been read. May throw std::bad_alloc.
 Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, Container container,
@@ -23,4 +23,4 @@ Result<PackFileReport> pack_stream(MapSource& map, const std::string& output, Co
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include <tex/mip.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 int levels_needed(const MipChain& chain, const UvMap& map) {
     const Extent extent = chain.levels.front().extent();
@@ -31,7 +31,7 @@ Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wr
         options.levels = levels;
         options.wrap_x = wrap_x;
         options.wrap_y = wrap_y;
-        const Execution silent{execution.threads, {}};
+        const Execution silent = execution.quiet();
         Result<MipChain> built = build_mip_chain(std::move(chain.levels.front()), options, silent);
         if (!built) return built.error();
         chain = std::move(*built);
@@ -39,4 +39,4 @@ Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wr
     return placed_on(chain, map, wrap_x, wrap_y);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

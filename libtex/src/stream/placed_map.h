@@ -3,12 +3,11 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "rows/blend_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The number of levels to build, 1 if the chain has its own or needs none.
 [[nodiscard]] int levels_needed(const MipChain& chain, const UvMap& map);
@@ -20,4 +19,4 @@ namespace tex {
 // throw std::bad_alloc. Errors: out_of_memory.
 Result<PlacedMap> place_chain(MipChain& chain, const UvMap& map, Wrap wrap_x, Wrap wrap_y, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "stream/measured_y.h"
 #include "stream/source_layout.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<void> SettledMap::open(const Execution& execution) {
     if (options_.fill_background && !filled_) {
@@ -85,7 +85,7 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     MapInspector inspector(map_->extent(0));
     Flow flow;
     add_to(flow, 0, {{}, &inspector});
-    if (Result<void> seen = flow.run({execution.threads, {}}); !seen) return seen;
+    if (Result<void> seen = flow.run(execution.quiet()); !seen) return seen;
     const std::optional<YAxis> shown = inspector.y();
     if (!shown) return undecided_y(map_->path());
     options_.unpack.y_axis = *shown;
@@ -118,4 +118,4 @@ Stage& SettledMap::add_to(Flow& flow, int level, const UnpackExtras& extras) con
     return flow.add<UnpackStage>(std::move(channels), sources_, rule_, extras);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

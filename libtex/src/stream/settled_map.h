@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 
-#include <tex/scale.h>
-#include <tex/source.h>
+#include <tex/blend.h>
+#include <tex/file.h>
 
 #include "rows/unpack_rows.h"
 #include "stream/map_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class SettledMap {
 public:
@@ -63,4 +63,4 @@ private:
     SourceInfo info_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "stream/normal_source.h"
 #include "stream/placed_map.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::int64_t bytes_of(Extent extent) { return extent.texels() * 3 * static_cast<std::int64_t>(sizeof(float)); }
@@ -143,4 +143,4 @@ Result<std::shared_ptr<const HeldMap>> SharedMaps::get(const std::string& path, 
     return with_levels(*entry, map, place, execution);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

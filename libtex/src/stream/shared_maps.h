@@ -16,7 +16,7 @@
 #include "files/input_file.h"
 #include "rows/sampler.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A whole map. Nobody changes it.
 struct HeldMap {
@@ -70,4 +70,4 @@ private:
     std::int64_t used_ = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

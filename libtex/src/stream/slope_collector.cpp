@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace tex {
+namespace tex::inline v1 {
 
 void SlopeCollector::add(const NormalMap& map, int begin, int end) {
     SlopeBounds bounds = kNone;
@@ -25,4 +25,4 @@ SlopeRange SlopeCollector::range() const {
     return {all_.min_x, all_.max_x, all_.min_y, all_.max_y};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

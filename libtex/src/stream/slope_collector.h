@@ -13,7 +13,7 @@
 
 #include "kernels/bake.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class SlopeCollector {
 public:
@@ -41,4 +41,4 @@ private:
     SlopeBounds all_ = kNone;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

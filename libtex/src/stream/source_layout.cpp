@@ -2,11 +2,11 @@
 
 #include "stream/source_layout.h"
 
-#include <tex/swizzle.h>
+#include <tex/format.h>
 
 #include "rows/unpack_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 bool is_bc5(Format format) { return format == Format::bc5_unorm || format == Format::bc5_snorm; }
@@ -29,7 +29,7 @@ Swizzle guessed_swizzle(const Swizzle& guess, const SourceOptions& options) {
 
 Result<Swizzle> find_swizzle(const Texture& texture, const SourceOptions& options, const Execution& execution) {
     if (const std::optional<Swizzle> known = known_swizzle(texture, options)) return *known;
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     Result<Swizzle> guess = guess_swizzle(texture, silent);
     if (!guess) return guess;
     return guessed_swizzle(*guess, options);
@@ -64,4 +64,4 @@ Result<void> check_channels(const Texture& head) {
     return Error{ErrorCode::unsupported, {}, kOneChannel};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

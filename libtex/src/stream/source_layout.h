@@ -5,9 +5,9 @@
 
 #include <optional>
 
-#include <tex/source.h>
+#include <tex/file.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The swizzle, if the texels are not needed to find it; nothing if guess_swizzle() must decide.
 std::optional<Swizzle> known_swizzle(const Texture& head, const SourceOptions& options);
@@ -27,4 +27,4 @@ UnpackOptions unpack_options(const SourceInfo& info, const SourceOptions& option
 // Checks that the channels can hold normals. Errors: unsupported.
 Result<void> check_channels(const Texture& head);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include "formats/claims.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Result<void> decode_rows(RowSource& rows, const std::string& input, int first, int count,
@@ -99,4 +99,4 @@ Error after_all_rows(RowSource& rows, const std::string& input, const Error& err
     return read ? error : read.error();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

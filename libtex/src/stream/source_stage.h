@@ -9,7 +9,7 @@
 #include "formats/row_source.h"
 #include "stream/flow.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Changes rows 0 to count - 1 of an image. Several threads may call it at once.
 using ConvertRows = std::function<Result<void>(Image& rows, int count)>;
@@ -22,4 +22,4 @@ Stage& add_source(Flow& flow, RowSource& rows, const std::string& input, Convert
 // comes first. Precondition: no row has been decoded yet.
 Error after_all_rows(RowSource& rows, const std::string& input, const Error& error);
 
-}  // namespace tex
+}  // namespace tex::inline v1

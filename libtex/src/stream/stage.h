@@ -8,15 +8,13 @@
 #include <vector>
 
 #include <tex/format.h>
-#include <tex/image.h>
-#include <tex/normal_map.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "kernels/normal_row.h"
 #include "rows/other_rows.h"
 #include "threads/pool.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The planes of a strip of normals after x, y and z are other data, in the order of kOtherPlaces.
 inline constexpr int kFirstOtherPlane = 3;
@@ -112,4 +110,4 @@ private:
     Pool<Strip> pool_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,12 +6,12 @@
 #include <numeric>
 #include <utility>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "rows/other_rows.h"
 #include "rows/pack_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The same plane, which keeps no memory. It is only read.
@@ -167,4 +167,4 @@ std::size_t Targets::bytes(Content content) const {
     return bytes;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "kernels/unpack.h"
 #include "stream/level_writer.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // How stored vectors get unit length.
 struct UnitRule {
@@ -98,4 +98,4 @@ private:
     std::optional<RdoReport> rdo_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

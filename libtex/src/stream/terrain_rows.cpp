@@ -10,7 +10,7 @@
 
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The height at any index of a row of n heights.
@@ -203,4 +203,4 @@ void TerrainRows::store(const std::byte* rows, int first, int end, Image& image)
     for (int j = first; j < end; ++j, rows += row_bytes()) std::memcpy(image.planes.front().row(j), rows, row_bytes());
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

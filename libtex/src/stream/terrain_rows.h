@@ -14,7 +14,7 @@
 #include "formats/row_source.h"
 #include "stream/tile_reader.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The rows of the window, in their order: one channel, Y, floats that were cleaned as take_heights() does. Three tiles
 // are open at a time. The fields of `file` and `options` must outlive it.
@@ -69,4 +69,4 @@ private:
     std::string invalid_neighbour_;  // the first one with an invalid height in the window
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

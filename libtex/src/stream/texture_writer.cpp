@@ -8,7 +8,7 @@
 #include "formats/ktx2/compress_ktx2.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<void> TextureWriter::begin(const std::string& path, const Codec& codec, int zstd_level) {
     if (zstd_level > 0) {
@@ -116,4 +116,4 @@ Result<void> TextureWriter::write(const LevelRows& rows) {
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,7 +18,7 @@
 #include "formats/file_layout.h"
 #include "stream/level_writer.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Writes containers in which the place of every level is known from the start: DDS, KTX2, ASTC.
 class TextureWriter final : public LevelWriter {
@@ -61,4 +61,4 @@ private:
     int zstd_level_ = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

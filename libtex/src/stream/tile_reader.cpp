@@ -7,7 +7,7 @@
 
 #include "formats/claims.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<std::unique_ptr<TileReader>> TileReader::open(const std::string& path, const BakeFileOptions& options) {
     Result<InputFile> file = InputFile::open(path);
@@ -73,4 +73,4 @@ Result<void> TileReader::finish() {
     return ended ? ended : Result<void>(ended.error().of(file_->path()));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -13,7 +13,7 @@
 #include "files/input_file.h"
 #include "stream/open_heights.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class TileReader {
 public:
@@ -51,4 +51,4 @@ private:
     bool is_stored_ = false;  // decoded_ has become image_
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include "formats/picture.h"
 #include "kernels/scale.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 namespace {
 
@@ -70,4 +70,4 @@ void UnpackStage::make_row(int j, const float* const (&channels)[4], Strip& stri
     if (extras_.scale) scale_row(out, extras_.scale->scale, extras_.scale->mode, width, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

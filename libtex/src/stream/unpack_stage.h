@@ -7,14 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include <tex/scale.h>
+#include <tex/blend.h>
 
 #include "rows/unpack_rows.h"
 #include "stream/flow.h"
 #include "stream/map_inspector.h"
 #include "stream/other_channels.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The channels of a map's format: their planes in the rows of a stage.
 struct StoredChannels {
@@ -53,4 +53,4 @@ private:
     std::mutex inspecting_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

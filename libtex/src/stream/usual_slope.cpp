@@ -10,7 +10,7 @@
 #include "stream/height_stage.h"
 #include "stream/open_heights.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::int64_t kEnoughTexels = std::int64_t{1} << 18;
@@ -71,14 +71,14 @@ Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& option
     BakeFileOptions as_one = options;
     as_one.strength = [](Extent) { return Strength{1.0f, 1.0f}; };
     const Gradient gradient = gradient_of(options.bake);
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     Result<Heights> heights = open_heights(file, RowOrder::any, as_one, gradient, silent);
     if (!heights) return heights.error();
     UsualSlope usual(heights->rows->extent());
     Flow flow;
     flow.add<MeasureStage>(*add_bake(flow, *heights, file.path(), as_one, gradient).normals, usual);
-    const Execution onward{execution.threads,
-                           [&execution](double) { return !execution.progress || execution.progress(0.0); }};
+    Execution onward = execution.quiet();
+    onward.progress = [&execution](double) { return !execution.progress || execution.progress(0.0); };
     if (const Result<void> done = flow.run(onward); !done) return done.error();
     const auto slope = static_cast<double>(usual.slope());
     if (!(slope > 0.0)) return Strength{};
@@ -99,4 +99,4 @@ Result<BakeFileOptions> with_measured_strength(InputFile& file, const BakeFileOp
     return measured;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

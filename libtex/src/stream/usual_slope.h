@@ -12,7 +12,7 @@
 #include "files/input_file.h"
 #include "kernels/normal_row.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Looks at some rows of a map, about 2^18 texels, in any order and from any thread. The result depends on neither.
 class UsualSlope {
@@ -41,4 +41,4 @@ Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& option
 Result<BakeFileOptions> with_measured_strength(InputFile& file, const BakeFileOptions& options,
                                                const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

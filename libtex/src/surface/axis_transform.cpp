@@ -8,7 +8,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 AxisTransform::AxisTransform(int texels, bool is_mirrored)
     : texels_(texels), is_mirrored_(is_mirrored), fourier_(texels), order_(static_cast<std::size_t>(texels)) {
@@ -44,4 +44,4 @@ void AxisTransform::inverse(Groups& data, Groups& scratch) const {
     fourier_.run(data, scratch);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "surface/fourier.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class AxisTransform {
 public:
@@ -37,4 +37,4 @@ private:
     WorkingVector<float> turns_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "kernels/deband.h"
 #include "rows/straight_border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Smaller grids take less time for a step than threads take to wait for each other.
@@ -31,7 +31,7 @@ public:
 
     Result<void> step(float momentum, const Execution& execution, ProgressSpan span) {
         momentum_ = momentum;
-        const Execution silent{execution.threads, {}};
+        const Execution silent = execution.quiet();
         const auto save = [this](int begin, int end) {
             for (int s = begin; s < end; ++s) save_strip(s);
         };
@@ -146,7 +146,8 @@ void refine_rows(const Plane<float>& coarse, const BendingGrid& grid, int begin,
 Result<void> relax(const BendingGrid& grid, int steps, Plane<float>& heights, const Execution& execution,
                    ProgressSpan span) {
     Relaxation relaxation(grid, heights);
-    const Execution own{grid.extent().texels() < kWorthThreads ? 1 : execution.threads, execution.progress};
+    Execution own = execution;
+    if (grid.extent().texels() < kWorthThreads) own.threads = 1;
     double t = 1.0;  // Beck and Teboulle's sequence
     for (int k = 0; k < steps; ++k) {
         const double next = (1.0 + std::sqrt(1.0 + 4.0 * t * t)) / 2.0;
@@ -161,7 +162,7 @@ Result<void> relax(const BendingGrid& grid, int steps, Plane<float>& heights, co
 Result<Plane<float>> halve(const Plane<float>& plane, HalveRows* halve_two, const Execution& execution) {
     const Extent full = plane.extent();
     Plane<float> out(Extent{(full.width + 1) / 2, (full.height + 1) / 2});
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const auto body = [&](int begin, int end) {
         EvenRows rows(full.width);
         for (int j = begin; j < end; ++j) {
@@ -175,10 +176,10 @@ Result<Plane<float>> halve(const Plane<float>& plane, HalveRows* halve_two, cons
 
 Result<Plane<float>> refine(const Plane<float>& coarse, const BendingGrid& grid, const Execution& execution) {
     Plane<float> out(grid.extent());
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const auto body = [&](int begin, int end) { refine_rows(coarse, grid, begin, end, out); };
     if (auto done = parallel_for(silent, grid.extent().height, kBendingStrip, body); !done) return done.error();
     return out;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,15 +3,13 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/height_field.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "kernels/deband.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct BendingGrid {
     Plane<float> codes;    // NaN where no height is known
@@ -38,4 +36,4 @@ Result<Plane<float>> halve(const Plane<float>& plane, HalveRows* halve_two, cons
 // Heights of a grid of half the size, on `grid`, within its bounds.
 Result<Plane<float>> refine(const Plane<float>& coarse, const BendingGrid& grid, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "rows/blur.h"
 #include "rows/straight_border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // What rounding adds to the square of a Laplacian: the weights of the stencil, squared, sum up to 20, and the variance
@@ -31,7 +31,7 @@ constexpr float kCoarser = 16.0f;
 // On coarse grids, hills that are smooth on fine ones look rough. What looks rough there counts for a tenth.
 constexpr float kOwn = 0.1f;
 
-Execution silent(const Execution& execution) { return {execution.threads, {}}; }
+Execution silent(const Execution& execution) { return execution.quiet(); }
 
 // The squares of the Laplacians.
 Result<Plane<float>> energies_of(const Plane<float>& codes, const BendingGrid& grid, const Execution& execution) {
@@ -111,4 +111,4 @@ Result<Plane<float>> bending_weights(const BendingGrid& grid, const Plane<float>
     return out;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

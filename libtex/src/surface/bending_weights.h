@@ -3,16 +3,14 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "surface/bending_grid.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The weights of a grid, for each square of 2x2 texels. `finer` are those of the next finer grid; null for the finest.
 // Errors: out_of_memory, cancelled.
 Result<Plane<float>> bending_weights(const BendingGrid& grid, const Plane<float>* finer, const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 #include "surface/bending_grid.h"
 #include "surface/bending_weights.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Steps on the finest grid, where real maps gain no more from further ones, and on those of half its size, of a
@@ -49,7 +49,7 @@ Result<Found> look_at(const Plane<float>& heights, const Execution& execution) {
             terraces[strip] += count_terraces(above, heights.row(j), below, extent.width);
         }
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent.height, rows, body); !done) return done.error();
     Found found;
     for (std::size_t k = 1; k < strips; ++k) distinct.front().add(distinct[k]);
@@ -113,7 +113,7 @@ Result<Plane<float>> solve(WorkingVector<BendingGrid>& grids, const Execution& e
 
 template <class RowBody>
 Result<void> in_strips(Extent extent, const Execution& execution, const RowBody& row) {
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) row(j);
     };
@@ -167,4 +167,4 @@ Result<DebandReport> deband_heights(Plane<float>& heights, Wrap wrap_x, Wrap wra
     return report;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

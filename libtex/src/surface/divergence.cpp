@@ -10,7 +10,7 @@
 #include "kernels/slopes.h"
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Forward differences have no slope beyond the border: settle_border() makes it 0 in the texel that it wraps around to.
@@ -127,4 +127,4 @@ void DivergenceRows::make(int j, float* out) {
     weighted_sum(beside_.row(2), -x_.ratio, beside_.row(1), -y_.ratio, width, out);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

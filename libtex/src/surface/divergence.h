@@ -17,12 +17,12 @@
 
 #include <functional>
 
-#include <tex/height_field.h>
+#include <tex/height.h>
 
 #include "memory/lent_memory.h"
 #include "rows/bake_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct SurfaceAxis {
     Wrap wrap = Wrap::repeat;
@@ -57,4 +57,4 @@ private:
     WorkingVector<float> ramp_x_, ramp_y_;  // the slope of a mirrored ramp in the first texels from a border
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Appends the real and imaginary parts of exp(-2 pi i turn / turns).
@@ -110,4 +110,4 @@ void Fourier::run(Groups& data, Groups& scratch) const {
     multiply_groups(Product::of_conjugate, chirp_.data(), length_, data.row(0));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

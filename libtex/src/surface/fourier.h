@@ -11,12 +11,12 @@
 
 #pragma once
 
-#include <tex/image.h>
+#include <tex/types.h>
 
 #include "kernels/fourier.h"
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Buffers of groups, one group in each row.
 using Groups = Plane<float>;
@@ -62,4 +62,4 @@ private:
     WorkingVector<float> kernel_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "kernels/stored.h"
 #include "memory/lent_memory.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 float larger_bumpiness(const IntegrateOptions& options) {
@@ -63,7 +63,7 @@ Result<Integrator::Count> Integrator::count(const Execution& execution) const {
             count.behind += count_below(map_.z.row(j), 0.0f, extent_.width);
         }
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent_.height, rows, body); !done) return done.error();
     Count all;
     for (const Count& count : counts) {
@@ -120,7 +120,7 @@ Result<void> Integrator::excess(const Plane<float>& heights, Plane<float>& p, Pl
                           q.row(j));
         }
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     return parallel_for(silent, extent_.height, strip_rows(extent_.width, 2 * gradient_.radius), body);
 }
 
@@ -136,7 +136,7 @@ Result<void> Integrator::refine(Plane<float>& heights, const Execution& executio
         std::copy_n(p.row(j), p.extent().width, to_p);
         std::copy_n(q.row(j), q.extent().width, to_q);
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     const double share = (span.to - span.from) / std::max(1, options_.most_steps);
     float last = std::numeric_limits<float>::max();
     float relax = 1.0f;
@@ -168,9 +168,9 @@ Result<float> settle_heights(Plane<float>& heights, float larger, const Executio
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) shift_and_scale(bounds.low, 1.0f / larger, extent.width, heights.row(j));
     };
-    const Execution silent{execution.threads, {}};
+    const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 0), body); !done) return done.error();
     return (bounds.high - bounds.low) * (1.0f / larger);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,17 +5,14 @@
 
 #include <cstdint>
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/integrate_options.h>
-#include <tex/normal_map.h>
-#include <tex/result.h>
+#include <tex/surface.h>
+#include <tex/types.h>
 
 #include "rows/bake_rows.h"
 #include "surface/divergence.h"
 #include "surface/poisson.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // From heights in texel widths, whose mean is 0, to those of the field, in place. Returns the highest; the lowest is 0.
 [[nodiscard]] Result<float> settle_heights(Plane<float>& heights, float larger, const Execution& execution);
@@ -57,4 +54,4 @@ private:
 // Whether a map has no slopes: z is below 0 in more than one of sixteen texels, or no slope is known.
 [[nodiscard]] bool is_unusable(const Integrator::Count& count, Extent extent);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "rows/border.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::int32_t kNone = -1;
@@ -170,4 +170,4 @@ Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

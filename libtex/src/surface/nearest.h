@@ -6,13 +6,12 @@
 #include <cstdint>
 #include <functional>
 
-#include <tex/execution.h>
-#include <tex/height_field.h>
-#include <tex/result.h>
+#include <tex/height.h>
+#include <tex/types.h>
 
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A hole, and the nearest texel that has a value.
 struct NearestTexel {
@@ -38,4 +37,4 @@ Result<void> visit_holes(PlaneView<const float> values, Wrap wrap_x, Wrap wrap_y
 Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
                                ProgressSpan span);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include "kernels/fourier.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kHalf = kGroup / 2;
@@ -138,4 +138,4 @@ Result<void> PoissonSolver::solve(Plane<float>& b, const Execution& execution, P
     return done;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -3,16 +3,14 @@
 
 #pragma once
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "memory/lent_memory.h"
 #include "rows/bake_rows.h"
 #include "surface/axis_transform.h"
 #include "threads/parallel.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // One axis of the equation.
 struct AxisOperator {
@@ -52,4 +50,4 @@ private:
     float least_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,13 +18,13 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace tex {
+namespace tex::inline v1 {
 
 #if defined(__SANITIZE_THREAD__)
 inline char fork_moment = 0;
@@ -104,4 +104,4 @@ void fork_join(int threads, int count, const Body& body) {
     happens_after(join_moment);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,9 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+#include "memory/lent_memory.h"
+
+namespace tex::inline v1 {
 
 inline Error out_of_memory_error() { return {ErrorCode::out_of_memory, {}, "out of memory"}; }
 
@@ -26,4 +28,11 @@ auto guarded(Body&& body) -> decltype(body()) {
     }
 }
 
-}  // namespace tex
+// The same for a verb whose planes come from execution.allocate.
+template <class Body>
+auto guarded(const Execution& execution, Body&& body) -> decltype(body()) {
+    const RowAllocation own(execution.allocate);
+    return guarded(std::forward<Body>(body));
+}
+
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace tex {
+namespace tex::inline v1 {
 
 void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
 #ifdef MADV_HUGEPAGE
@@ -20,4 +20,4 @@ void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size
 #endif
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,10 +11,11 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "memory/lent_memory.h"
 #include "threads/fork_join.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Counts finished pieces and reports progress, one thread at a time; remembers a request to stop.
@@ -67,8 +68,9 @@ private:
 
 Execution part_of(const Execution& execution, double from, double to) {
     if (!execution.progress) return execution;
-    return {execution.threads,
-            [&execution, from, to](double done) { return execution.progress(from + (to - from) * done); }};
+    Execution part = execution.quiet();
+    part.progress = [&execution, from, to](double done) { return execution.progress(from + (to - from) * done); };
+    return part;
 }
 
 int thread_count(const Execution& execution) {
@@ -81,6 +83,7 @@ Result<void> parallel_for(const Execution& execution, int count, int grain, cons
     Ticker ticker(execution, pieces, span);
     const auto run = [&](int piece) {
         if (ticker.stopped()) return;
+        const RowAllocation own(execution.allocate);
         try {
             const int begin = piece * grain;
             body(begin, std::min(count, begin + grain));
@@ -91,6 +94,11 @@ Result<void> parallel_for(const Execution& execution, int count, int grain, cons
         ticker.tick();
     };
     int threads = std::min(thread_count(execution), pieces);
+    if (threads > 1 && execution.parallel) {
+        execution.parallel(pieces, run);
+        ticker.finish();
+        return ticker.result();
+    }
     // TBB prints a warning to stderr if an arena requests more threads than are allowed (by default, one for each
     // processor). One thread needs no TBB.
     if (threads > 1) {
@@ -110,4 +118,4 @@ Result<void> parallel_for(const Execution& execution, int count, int grain, cons
     return ticker.result();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

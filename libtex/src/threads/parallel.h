@@ -7,11 +7,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <tex/execution.h>
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The part of a verb's progress that one loop covers. A verb that runs several loops gives each loop its share.
 struct ProgressSpan {
@@ -57,4 +55,4 @@ Execution part_of(const Execution& execution, double from, double to);
 // The number of threads that `execution` requests: at least 1.
 int thread_count(const Execution& execution);
 
-}  // namespace tex
+}  // namespace tex::inline v1

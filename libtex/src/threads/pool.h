@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Lends objects. An object that nobody holds any more waits for the next taker, in the state in which it was left. Any
 // thread may take and return objects. An object may outlive the pool. Copies of a pool share the waiting objects.
@@ -48,4 +48,4 @@ private:
     std::shared_ptr<Shelf> shelf_ = std::make_shared<Shelf>();
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,7 +16,7 @@
 #include "formats/words.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The words of the header. Those that say where the grid is are read and not used.
@@ -175,4 +175,4 @@ Result<std::unique_ptr<RowSource>> open_asc(InputFile& file, const ReadOptions& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

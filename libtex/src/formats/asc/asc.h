@@ -8,13 +8,13 @@
 #include <memory>
 #include <span>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a file that begins with these bytes is such a grid: its first word is one of the header's, and a number
 // follows.
@@ -29,4 +29,4 @@ bool may_be_asc(std::span<const std::byte> head);
 // heights; the reason names the line), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_asc(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -4,7 +4,7 @@
 
 #include "formats/words.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kLongestWord = 400;  // "%f" of the largest double has 317 characters
@@ -63,4 +63,4 @@ std::string WordReader::shown() const {
     return text + (word_.size() > kShownLength ? "...\"" : "\"");
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class WordReader {
 public:
@@ -43,4 +43,4 @@ private:
     bool is_back_ = false;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 #include "formats/channels.h"
 #include "formats/claims.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 16;
@@ -77,4 +77,4 @@ Result<StoredTexture> parse_astc(const FetchBytes& fetch, std::size_t size, cons
     return stored;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

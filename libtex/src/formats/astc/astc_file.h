@@ -11,13 +11,13 @@
 #include <string>
 #include <string_view>
 
-#include <tex/container.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "formats/file_layout.h"
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kAstcMagic = "\x13\xab\xa1\x5c";
 
@@ -29,4 +29,4 @@ inline constexpr std::string_view kAstcMagic = "\x13\xab\xa1\x5c";
 [[nodiscard]] Result<StoredTexture> parse_astc(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                                const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "formats/words.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kExtensionLength = 4;  // of all of them, with the dot
@@ -55,4 +55,4 @@ Result<std::unique_ptr<RowSource>> open_bil(InputFile& file, const ReadOptions& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

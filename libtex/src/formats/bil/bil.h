@@ -7,13 +7,13 @@
 
 #include <memory>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a file is called .bil, .bip, .bsq or .flt, in any case.
 bool is_bil(const InputFile& file, const ReadOptions& options);
@@ -29,4 +29,4 @@ bool is_bil(const InputFile& file, const ReadOptions& options);
 // out_of_memory.
 Result<std::unique_ptr<RowSource>> open_bil(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

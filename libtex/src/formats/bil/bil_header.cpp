@@ -10,7 +10,7 @@
 #include "formats/claims.h"
 #include "formats/words.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 enum BilKey {
@@ -141,4 +141,4 @@ Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::
     return place;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "formats/raw/raw_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Reads the text of a header. `is_float`: the file is called .flt. Errors: as open_bil(); they name `path`. May throw
 // std::bad_alloc.
 Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
                                  const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 #include "formats/code_rows.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // A code of n bits as one of m: its bits repeated.
@@ -170,4 +170,4 @@ Result<std::unique_ptr<RowSource>> open_bmp(InputFile& file, const ReadOptions& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string_view>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "formats/row_target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kBmpMagic = "BM";
 
@@ -31,4 +31,4 @@ Result<std::unique_ptr<RowSource>> open_bmp(InputFile& file, const ReadOptions& 
 // bottom, as Windows 3. Errors: unsupported (the extent, another format), those of WriteBytes.
 Result<std::unique_ptr<RowTarget>> open_bmp_target(const TextureHead& head, WriteBytes write);
 
-}  // namespace tex
+}  // namespace tex::inline v1

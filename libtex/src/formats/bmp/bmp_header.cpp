@@ -10,7 +10,7 @@
 #include "formats/bytes.h"
 #include "formats/claims.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 enum class Compression : std::uint32_t { none, rle8, rle4, masks, jpeg, png, masks_with_alpha };
@@ -181,4 +181,4 @@ Result<BmpHeader> read_bmp_header(const InputFile& file, const ReadOptions& opti
     return header;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,13 +7,12 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::size_t kBmpFileHeader = 14;
 inline constexpr std::uint32_t kBmpCoreHeader = 12, kBmpInfoHeader = 40;  // both count themselves
@@ -46,4 +45,4 @@ private:
 // Reads the headers of a file whose size is known. Errors: as open_bmp().
 Result<BmpHeader> read_bmp_header(const InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

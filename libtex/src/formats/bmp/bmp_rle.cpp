@@ -7,7 +7,7 @@
 
 #include "formats/byte_range.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // How a row ended.
@@ -114,4 +114,4 @@ Result<void> read_bmp_rows(const InputFile& file, const BmpHeader& header, const
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

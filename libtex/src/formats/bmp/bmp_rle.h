@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/bmp/bmp_header.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Where a row begins. Codes may skip whole rows, and the beginning of a row.
 struct BmpRowStart {
@@ -29,4 +29,4 @@ Result<std::vector<BmpRowStart>> find_bmp_rows(const InputFile& file, const BmpH
 Result<void> read_bmp_rows(const InputFile& file, const BmpHeader& header, const std::vector<BmpRowStart>& starts,
                            int first, int count, std::uint8_t* indices);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "formats/codecs.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kAlignment = 4;
@@ -55,4 +55,4 @@ Result<std::unique_ptr<RowTarget>> open_bmp_target(const TextureHead& head, Writ
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/bytes.h"
 #include "formats/claims.h"
@@ -19,7 +19,7 @@
 #include "formats/marks.h"
 #include "formats/normal_mark.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kMagicBytes = kDdsMagic.size();
@@ -325,4 +325,4 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
     return stored;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,14 +11,14 @@
 #include <string>
 #include <string_view>
 
-#include <tex/container.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/file_layout.h"
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kDdsMagic = "DDS ";
 
@@ -31,4 +31,4 @@ inline constexpr std::string_view kDdsMagic = "DDS ";
 [[nodiscard]] Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                               const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 #include "formats/dds/dds_refused.h"
 #include "formats/marks.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr Component kX = Component::x;
@@ -222,4 +222,4 @@ Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
     return Error{ErrorCode::unsupported, {}, refused_dxgi(dxgi)};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

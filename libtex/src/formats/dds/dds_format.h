@@ -10,11 +10,11 @@
 #include <vector>
 
 #include <tex/format.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/dds/fields.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // DDS_PIXELFORMAT without the size field.
 struct DdsPixelFormat {
@@ -49,4 +49,4 @@ struct DdsTexels {
 // From the DXGI_FORMAT of a DX10 header. Errors: unsupported.
 [[nodiscard]] Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi);
 
-}  // namespace tex
+}  // namespace tex::inline v1

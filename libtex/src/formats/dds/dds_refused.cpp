@@ -7,7 +7,7 @@
 
 #include "formats/bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Texconv of Microsoft's DirectXTex reads all of these.
@@ -111,4 +111,4 @@ std::string refused_legacy(const DdsPixelFormat& pixel_format) {
     return (flags & kDdpfPalette8) != 0 ? refused("a palette of 8 bits", kBytes) : "";
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include "formats/dds/dds_format.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A sentence about a DXGI_FORMAT.
 [[nodiscard]] std::string refused_dxgi(std::uint32_t dxgi);
@@ -16,4 +16,4 @@ namespace tex {
 // Describes a legacy pixel format in one sentence. Empty if the format has no name.
 [[nodiscard]] std::string refused_legacy(const DdsPixelFormat& pixel_format);
 
-}  // namespace tex
+}  // namespace tex::inline v1

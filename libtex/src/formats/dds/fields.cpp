@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Whether `mask` is one run of bits within the first `bits` bits.
@@ -66,4 +66,4 @@ void convert_fields(const FieldLayout& layout, const std::byte* source, std::siz
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

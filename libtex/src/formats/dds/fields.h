@@ -10,7 +10,7 @@
 
 #include <tex/format.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A texel of `texel_bytes` (1 to 4) bytes; fields[c] is the mask of channel R, G, B, A, or 0 if the texel lacks the
 // channel.
@@ -30,4 +30,4 @@ struct FieldLayout {
 void convert_fields(const FieldLayout& layout, const std::byte* source, std::size_t texels, Format format,
                     std::byte* target);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/row_target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kExrMagic = "\x76\x2f\x31\x01";
 
@@ -34,4 +34,4 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
 // out_of_memory.
 Result<std::vector<std::byte>> encode_exr(const Texture& texture);
 
-}  // namespace tex
+}  // namespace tex::inline v1

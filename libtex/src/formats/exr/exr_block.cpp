@@ -10,7 +10,7 @@
 
 #include "formats/exr/exr_chunk.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{256} << 10;  // of texels: enough to be worth a thread
@@ -99,4 +99,4 @@ void ExrBlock::append_chunk(int chunk, Zipper& zipper) {
     chunks_.sizes.push_back(chunks_.bytes.size() - begin);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

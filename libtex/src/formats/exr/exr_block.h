@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <tex/image.h>
+#include <tex/types.h>
 
 #include "formats/exr/exr_zip.h"
 #include "formats/row_target.h"
 #include "threads/pool.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kExrTile = 64;  // the sides of a tile, in texels
 
@@ -85,4 +85,4 @@ private:
     ExrChunks chunks_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

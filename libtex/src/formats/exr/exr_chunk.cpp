@@ -4,7 +4,7 @@
 
 #include "kernels/zip_bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 bool is_decoded_here(Imf::Compression compression) {
     switch (compression) {
@@ -52,4 +52,4 @@ std::span<const std::byte> ChunkDecoder::unrolled(std::span<const std::byte> chu
     return std::span(texels_).first(wanted);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,7 +11,7 @@
 
 #include "formats/exr/exr_zip.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether ChunkDecoder knows the compression: none, RLE, ZIPS and ZIP. tex-reader decodes the others.
 [[nodiscard]] bool is_decoded_here(Imf::Compression compression);
@@ -37,4 +37,4 @@ private:
     std::vector<std::byte> runs_, texels_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -15,7 +15,7 @@
 #include "formats/claims.h"
 #include "rows/channel_names.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The greatest number of bytes that one byte of the file can stand for.
@@ -330,4 +330,4 @@ Result<Extent> check_header(const std::string& path, const Imf::Header& header, 
     return extent;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -16,13 +16,12 @@
 #include <ImfPixelType.h>
 #include <ImfTileDescription.h>
 
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // libtex's own attributes.
 inline constexpr const char* kNormalEncoding = "normalEncoding";
@@ -105,4 +104,4 @@ std::optional<Imf::TileDescription> tiles_of(const Imf::Header& header);
 Result<Extent> check_header(const std::string& path, const Imf::Header& header, std::int64_t file_size,
                             const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include <ImfChannelList.h>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::size_t size_of(Extent extent, std::size_t each) { return static_cast<std::size_t>(extent.texels()) * each; }
@@ -175,4 +175,4 @@ void ExrReader::store(const std::byte* texels, Extent extent, int left, int top,
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

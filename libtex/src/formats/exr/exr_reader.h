@@ -13,15 +13,14 @@
 
 #include <ImfHeader.h>
 
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
 #include "threads/pool.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Where the texels of some rows go. A row holds all values of one channel, each as in the file, then those of the next
 // channel.
@@ -83,4 +82,4 @@ private:
     Pool<ChunkDecoder> decoders_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

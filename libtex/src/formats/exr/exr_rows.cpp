@@ -20,7 +20,7 @@
 #include "kernels/samples.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 class ExrRows final : public RowSource {
@@ -166,4 +166,4 @@ Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& op
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,14 +5,14 @@
 
 #include <memory>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "formats/texture_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Opens an EXR file to be read as read_image() describes, a few rows at a time. Several threads may decode at once. The
 // picture is the data window, at its largest level; of several parts it is the first. Planes R, G, B and A come first,
@@ -28,4 +28,4 @@ Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOpti
 // a remark. Errors: as open_exr_rows(); unsupported if there are more than four channels and R, G or B is missing.
 Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,12 +7,12 @@
 
 #include <ImfStringAttribute.h>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/channels.h"
 #include "rows/channel_names.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The channels of a texture. A part with one channel needs no name that says what it holds, nor does alpha beside it.
@@ -76,4 +76,4 @@ Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& he
     return texture;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

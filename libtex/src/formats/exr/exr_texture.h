@@ -8,12 +8,12 @@
 
 #include <ImfHeader.h>
 
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/exr/exr_part.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct ExrTexture {
     std::vector<ExrChannel> channels;  // in the order of the texture
@@ -26,4 +26,4 @@ struct ExrTexture {
 Result<ExrTexture> exr_texture_of(const std::string& path, const Imf::Header& header, Extent base,
                                   const std::vector<ExrChannel>& all);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace tex {
+namespace tex::inline v1 {
 
 Result<void> ExrWaitingBlocks::add(int number, ExrChunks chunks) {
     held_bytes_ += chunks.bytes.size();
@@ -45,4 +45,4 @@ Result<std::optional<ExrChunks>> ExrWaitingBlocks::take(int number) {
     return std::optional(ExrChunks{std::move(*bytes), std::move(moved.mapped().sizes)});
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/scratch_file.h"
 #include "formats/exr/exr_block.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Small levels wait until the larger ones are in the file: a third of all bytes. Those that must wait longest go to a
 // scratch file as soon as all take more than kMostHeld bytes.
@@ -49,4 +49,4 @@ private:
     std::uint64_t end_ = 0;  // of the scratch file
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

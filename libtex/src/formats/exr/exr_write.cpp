@@ -20,7 +20,7 @@
 #include <ImfVecAttribute.h>
 #include <OpenEXRConfig.h>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/exr/exr_part.h"
 #include "formats/exr/exr_waiting.h"
@@ -28,7 +28,7 @@
 #include "threads/guard.h"
 #include "threads/pool.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "files and levels hold little-endian values");
@@ -243,4 +243,4 @@ Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
     return guarded([&] { return encode_rows(open_exr_target, texture, true); });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

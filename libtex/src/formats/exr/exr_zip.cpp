@@ -9,7 +9,7 @@
 #include "formats/exr/exr.h"
 #include "kernels/zip_bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Chunks are a little smaller than those of OpenEXR (zlib's level 4), and take half of the time (measured on normals of
@@ -53,4 +53,4 @@ std::span<const std::byte> Zipper::chunk() {
     return texels;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

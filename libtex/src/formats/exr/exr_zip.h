@@ -11,7 +11,7 @@
 struct libdeflate_compressor;
 struct libdeflate_decompressor;
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Decodes chunks. Checking that they are whole takes as long as decoding them.
 class Unzipper {
@@ -44,4 +44,4 @@ private:
     std::vector<std::byte> differences_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "formats/words.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr Extent kHgtExtents[] = {{3601, 3601}, {1801, 3601}, {1201, 1201}};
@@ -41,4 +41,4 @@ Result<std::unique_ptr<RowSource>> open_hgt(InputFile& file, const ReadOptions& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

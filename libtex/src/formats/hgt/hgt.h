@@ -10,13 +10,13 @@
 
 #include <memory>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a file is called .hgt, in any case.
 bool is_hgt(const InputFile& file, const ReadOptions& options);
@@ -26,4 +26,4 @@ bool is_hgt(const InputFile& file, const ReadOptions& options);
 // Errors: bad_data (another length), unsupported (more than options.max_texels), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_hgt(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

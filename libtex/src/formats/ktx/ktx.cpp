@@ -7,7 +7,7 @@
 #include <iterator>
 #include <optional>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
@@ -16,7 +16,7 @@
 #include "formats/layers.h"
 #include "formats/marks.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kKtxHeaderBytes = 64;
@@ -204,4 +204,4 @@ Result<StoredTexture> parse_ktx(const FetchBytes& fetch, std::size_t size, const
     return stored;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kKtxMagic("\xABKTX 11\xBB\r\n\x1A\n", 12);
 
@@ -21,4 +21,4 @@ inline constexpr std::string_view kKtxMagic("\xABKTX 11\xBB\r\n\x1A\n", 12);
 Result<StoredTexture> parse_ktx(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                 const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

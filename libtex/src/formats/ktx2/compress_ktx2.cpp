@@ -12,7 +12,7 @@
 
 #include "formats/bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct FreeCompressor {
@@ -102,4 +102,4 @@ Result<std::uint64_t> compressed_size(const FileLayout::Place& place, int level,
 
 const char* zstd_version() { return ZSTD_versionString(); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,13 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/file_layout.h"
 #include "formats/row_target.h"
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;  // that are read or written together
 
@@ -32,4 +32,4 @@ inline constexpr int kJudgedZstdLevel = 19;
 // The version of libzstd at run time: "1.5.4".
 [[nodiscard]] const char* zstd_version();
 
-}  // namespace tex
+}  // namespace tex::inline v1

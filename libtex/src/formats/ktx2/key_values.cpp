@@ -6,7 +6,7 @@
 
 #include "formats/bytes.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 std::optional<std::vector<KeyValue>> parse_key_values(const std::vector<std::byte>& bytes, bool big_endian) {
     std::vector<KeyValue> entries;
@@ -28,4 +28,4 @@ std::optional<std::vector<KeyValue>> parse_key_values(const std::vector<std::byt
     return entries;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // They point into the bytes from which they were read.
 struct KeyValue {
@@ -19,4 +19,4 @@ struct KeyValue {
 // nullopt if the entries are inconsistent. KTX files may be big-endian.
 std::optional<std::vector<KeyValue>> parse_key_values(const std::vector<std::byte>& bytes, bool big_endian);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-#include <tex/mip_chain.h>
+#include <tex/types.h>
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
@@ -21,7 +21,7 @@
 #include "formats/marks.h"
 #include "formats/normal_mark.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 80;      // identifier, header and index
@@ -315,4 +315,4 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     return stored;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

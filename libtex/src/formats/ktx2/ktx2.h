@@ -9,14 +9,14 @@
 #include <string>
 #include <string_view>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "formats/file_layout.h"
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::string_view kKtx2Magic = "\xabKTX 20\xbb\r\n\x1a\n";
 
@@ -33,4 +33,4 @@ inline constexpr std::string_view kUastcWithoutAlpha =
 [[nodiscard]] Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, const std::string& name,
                                                const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

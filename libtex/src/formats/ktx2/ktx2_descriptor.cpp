@@ -8,7 +8,7 @@
 #include "formats/bytes.h"
 #include "formats/marks.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // From khr_df.h of the Khronos Data Format Specification.
@@ -98,4 +98,4 @@ std::vector<std::byte> data_format_descriptor(Format format) {
     return writer.take();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,10 +8,10 @@
 
 #include <tex/format.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The basic data format descriptor block of a format (Khronos Data Format Specification 1.3, section 5), preceded by
 // the total size. It states linear transfer and no colour primaries, because normals are not colours.
 [[nodiscard]] std::vector<std::byte> data_format_descriptor(Format format);
 
-}  // namespace tex
+}  // namespace tex::inline v1

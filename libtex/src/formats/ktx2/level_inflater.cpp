@@ -16,7 +16,7 @@
 #include "formats/claims.h"
 #include "formats/ktx2/compress_ktx2.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Error damaged(std::string reason) { return {ErrorCode::bad_data, {}, "compressed level: " + std::move(reason)}; }
@@ -181,4 +181,4 @@ double most_inflation(Supercompression scheme) {
     return scheme == Supercompression::zlib ? kDeflateRatio : 32768.0;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

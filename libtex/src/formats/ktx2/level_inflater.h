@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/stored_texture.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The bytes of one level of a compressed file. Zstandard is decoded as a stream, so that only its window is in memory;
 // ZLIB is decoded as a whole. A level that holds too few or too many bytes is an error, and nothing is allocated for
@@ -61,4 +61,4 @@ private:
 // The most bytes that a byte of compressed data can stand for.
 [[nodiscard]] double most_inflation(Supercompression scheme);
 
-}  // namespace tex
+}  // namespace tex::inline v1

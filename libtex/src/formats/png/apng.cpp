@@ -11,7 +11,7 @@
 #include "formats/png/png_chunk.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -103,4 +103,4 @@ Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

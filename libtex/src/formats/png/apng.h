@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Joins PNG files of the same extent and format, as encode_png() makes them, into one animation that repeats forever
 // and shows each frame for 1 / frames_per_second seconds. Programs without support for animation show the first frame.
@@ -19,4 +19,4 @@ namespace tex {
 Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std::byte>>& frames,
                                                int frames_per_second);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -18,7 +18,7 @@
 #include "formats/png/png_rows.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Converts rows of bytes to rows [first, end) of `image`.
@@ -182,4 +182,4 @@ Result<std::unique_ptr<RowSource>> open_png_with_libpng(InputFile& file, const R
     return open_decoder(file, options, true);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

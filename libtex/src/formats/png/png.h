@@ -11,16 +11,15 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "formats/row_target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The first four bytes of a PNG. A transfer in text mode damages the bytes after them.
 inline constexpr std::string_view kPngMagic = "\x89PNG";
@@ -57,4 +56,4 @@ struct PngColor {
 };
 Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette);
 
-}  // namespace tex
+}  // namespace tex::inline v1

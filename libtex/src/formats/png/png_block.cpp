@@ -12,7 +12,7 @@
 #include "formats/png/png_chunk.h"
 #include "kernels/png_filter.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // After an adaptive filter, a normal map has hardly any repetition that deflate could find. Run lengths alone therefore
@@ -124,4 +124,4 @@ void PngBlock::append_to(std::vector<std::byte>& file, std::uint32_t& adler) con
     end_png_chunk(file, begun);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

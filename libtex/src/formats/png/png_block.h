@@ -13,7 +13,7 @@
 
 struct z_stream_s;
 
-namespace tex {
+namespace tex::inline v1 {
 
 // How rows are divided among blocks. This depends on the picture alone, so the bytes of the file do too.
 struct PngShape {
@@ -89,4 +89,4 @@ private:
     std::uint32_t adler_ = 1;  // of the filtered rows
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

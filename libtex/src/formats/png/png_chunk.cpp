@@ -4,7 +4,7 @@
 
 #include <libdeflate.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 void put_png_number(std::vector<std::byte>& to, std::uint32_t value, int bytes) {
     for (int shift = 8 * (bytes - 1); shift >= 0; shift -= 8) to.push_back(static_cast<std::byte>(value >> shift));
@@ -24,4 +24,4 @@ void end_png_chunk(std::vector<std::byte>& to, std::size_t begun) {
     put_png_number(to, crc, 4);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Appends the low `bytes` bytes of a number, the highest first.
 void put_png_number(std::vector<std::byte>& to, std::uint32_t value, int bytes);
@@ -18,4 +18,4 @@ void put_png_number(std::vector<std::byte>& to, std::uint32_t value, int bytes);
 [[nodiscard]] std::size_t begin_png_chunk(std::vector<std::byte>& to, std::string_view type);
 void end_png_chunk(std::vector<std::byte>& to, std::size_t begun);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Texel i of less than 8 bits, or of 8: the first is in the highest bits of a byte.
@@ -61,4 +61,4 @@ void expand_png_row(const PngKind& kind, const std::uint8_t* row, std::size_t wi
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

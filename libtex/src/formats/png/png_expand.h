@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The kind of the texels, from the chunks IHDR, PLTE and tRNS.
 struct PngKind {
@@ -41,4 +41,4 @@ struct PngKind {
 // v / (2^n - 1). Samples of 16 bits remain big-endian.
 void expand_png_row(const PngKind& kind, const std::uint8_t* row, std::size_t width, std::uint8_t* out);
 
-}  // namespace tex
+}  // namespace tex::inline v1

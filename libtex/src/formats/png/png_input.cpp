@@ -7,7 +7,7 @@
 
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kBuffer = std::size_t{1} << 16;
@@ -45,4 +45,4 @@ std::span<const std::uint8_t> PngInput::some(std::size_t most) {
     return bytes;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,11 +9,11 @@
 #include <optional>
 #include <span>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class PngInput {
 public:
@@ -38,4 +38,4 @@ private:
     std::optional<Error> error_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

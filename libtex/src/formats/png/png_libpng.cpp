@@ -15,7 +15,7 @@
 #include "formats/normal_mark.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr png_byte kTextChunk[] = "tEXt";
@@ -145,4 +145,4 @@ Result<void> LibpngReader::finish() {
     return {};
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "formats/png/png_expand.h"
 #include "formats/png/png_input.h"
 #include "formats/png/png_state.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class LibpngReader : private PngState {
 public:
@@ -69,4 +69,4 @@ private:
     std::string normal_mark_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

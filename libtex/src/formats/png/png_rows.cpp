@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::size_t kMostHeld = std::size_t{1} << 21;
@@ -56,4 +56,4 @@ Result<bool> PlainPngRows::decode(int count, std::size_t row_bytes, std::uint8_t
     return true;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,14 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/png/png_expand.h"
 #include "formats/png/png_texels.h"
 #include "kernels/png_unfilter.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 class PlainPngRows {
 public:
@@ -47,4 +46,4 @@ private:
     int next_ = 0;   // the first row that is not held
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

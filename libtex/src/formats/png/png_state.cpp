@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 
 void on_png_error(png_structp png, png_const_charp message) {
     auto* state = static_cast<PngState*>(png_get_error_ptr(png));
@@ -25,4 +25,4 @@ png_voidp on_png_allocate(png_structp png, png_alloc_size_t size) {
 
 void on_png_free(png_structp, png_voidp memory) { std::free(memory); }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct PngState {
     png_structp png = nullptr;
@@ -24,4 +24,4 @@ void on_png_warning(png_structp png, png_const_charp message);
 png_voidp on_png_allocate(png_structp png, png_alloc_size_t size);
 void on_png_free(png_structp png, png_voidp memory);
 
-}  // namespace tex
+}  // namespace tex::inline v1

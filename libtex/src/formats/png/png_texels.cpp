@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::uint32_t kMostBytes = 0x7fffffff;  // of a chunk
@@ -148,4 +148,4 @@ bool PngTexels::skip_to_end() {
     }
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

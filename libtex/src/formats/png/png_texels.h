@@ -13,13 +13,13 @@
 #include <memory>
 #include <string>
 
-#include <tex/result.h>
+#include <tex/types.h>
 
 #include "formats/png/png_input.h"
 
 struct inflate_state;
 
-namespace tex {
+namespace tex::inline v1 {
 
 // The name and the version of the library that inflates.
 std::string png_inflater_version();
@@ -57,4 +57,4 @@ private:
     std::uint32_t crc_;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -19,7 +19,7 @@
 #include "formats/row_target.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 struct PngWriter : PngState {
@@ -225,4 +225,4 @@ Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const st
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 #include "formats/words.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr std::string_view kWanted = "a raw layout is [WxH,]TYPE[,SKIP], for example 1025x1025,u16le";
@@ -124,4 +124,4 @@ FileLayout raw_layout(const TextureHead& head, const WriteOptions&) {
     return layout;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

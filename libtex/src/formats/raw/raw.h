@@ -8,15 +8,14 @@
 #include <memory>
 #include <string>
 
-#include <tex/container.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class RawType { u8, u16le, u16be, s16le, s16be, f32le, f32be };
 
@@ -45,4 +44,4 @@ Result<std::unique_ptr<RowSource>> open_raw(InputFile& file, const ReadOptions& 
 // A file of one level that is nothing but its texels.
 FileLayout raw_layout(const TextureHead& head, const WriteOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,7 +10,7 @@
 
 #include "kernels/samples.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 std::uint32_t tiff_kind(SampleKind kind) {
@@ -123,4 +123,4 @@ std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawPlace place) 
     return std::make_unique<RawRows>(file, std::move(place));
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 struct RawSamples {
     SampleKind kind = SampleKind::unorm;
@@ -39,4 +39,4 @@ struct RawPlace {
 // One channel, Y. The file must outlive the rows and have place.end() bytes. Several threads may decode at once.
 std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawPlace place);
 
-}  // namespace tex
+}  // namespace tex::inline v1

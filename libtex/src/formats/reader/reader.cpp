@@ -21,7 +21,7 @@
 #include "formats/reader/reader_process.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // -- what goes out -------------------------------------------------------------------------------------------
@@ -128,4 +128,4 @@ Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Contai
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

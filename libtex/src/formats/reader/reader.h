@@ -10,16 +10,15 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/container.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
-#include <tex/texture.h>
+#include <tex/file.h>
+#include <tex/format.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/file_layout.h"
 #include "formats/reader/reader_child.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A picture that the reader process encodes once all of its rows are there. Until then, the rows wait in a file in
 // memory.
@@ -61,4 +60,4 @@ ReaderProgram program_for(std::string_view format);
 // Errors: io (a program of another package is not installed, or it is not there).
 Result<std::string> find_reader(const ReadOptions& options, ReaderProgram program = ReaderProgram::pictures);
 
-}  // namespace tex
+}  // namespace tex::inline v1

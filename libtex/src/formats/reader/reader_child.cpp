@@ -11,7 +11,7 @@
 
 #include "formats/reader/reader_spawn.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Ending collect(pid_t child) {
@@ -57,4 +57,4 @@ int start_reader(const std::string& program, const ReaderJob& job, int progress,
     return failed;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 #include <sys/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 enum class ReaderProgram { pictures, other_pictures, meshes };  // tex-reader, tex-reader-oiio, tex-mesh-reader
 
@@ -56,4 +56,4 @@ private:
 int start_reader(const std::string& program, const ReaderJob& job, int progress, const ReaderLimits& limits,
                  ReaderChild& child);
 
-}  // namespace tex
+}  // namespace tex::inline v1

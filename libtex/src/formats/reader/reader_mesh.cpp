@@ -9,7 +9,7 @@
 #include "files/system_error.h"
 #include "formats/reader/reader_process.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The extension in lower-case letters, or "-" if the path has no plain one.
@@ -49,4 +49,4 @@ Result<std::vector<std::byte>> decode_draco_with_reader(const std::string& path,
     return answer_of_mesh_reader(path, "draco", "-", request, options);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Reads a mesh and returns it as GLB, whose UVs have v up. The extension of the path helps Assimp to tell file types
 // apart. The GLB is not to be trusted.
@@ -27,4 +27,4 @@ Result<std::vector<std::byte>> read_with_mesh_reader(const std::string& path, st
 Result<std::vector<std::byte>> decode_draco_with_reader(const std::string& path, std::span<const std::byte> request,
                                                         const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -6,7 +6,7 @@
 #include "formats/reader/reader_mesh.h"
 #include "formats/reader/reader_rows.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 Error no_reader(const std::string& path = {}) {
@@ -43,4 +43,4 @@ Result<std::vector<std::byte>> encode_with_reader(const Texture&, Container, con
     return no_reader();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -24,7 +24,7 @@
 #include "formats/reader/reader_spawn.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -269,4 +269,4 @@ Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options
     return process->finish();
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -10,14 +10,14 @@
 #include <string>
 #include <vector>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/reader/reader_child.h"
 #include "formats/reader/reader_protocol.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // A file in memory that other processes can enlarge and fill, but not shorten. Errors: out_of_memory.
 Result<Descriptor> memory_file(const std::string& path);
@@ -62,4 +62,4 @@ private:
 // Runs a reader from start to end. Errors: those of start() and finish().
 Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

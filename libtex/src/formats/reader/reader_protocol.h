@@ -42,7 +42,7 @@
 
 #include "formats/stored_samples.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr int kFirstDescriptor = 3;  // after the standard streams, which are /dev/null
 inline constexpr int kResultDescriptor = 3;
@@ -109,4 +109,4 @@ inline constexpr std::uint64_t row_bytes(const ReaderHeader& header) {
            reader_type_bytes(header.type);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -24,7 +24,7 @@
 #include "formats/reader/reader_process.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The first bytes of a file type, and its name, which is that of OpenImageIO's format.
@@ -343,4 +343,4 @@ Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadO
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,13 +5,13 @@
 
 #include <memory>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Starts the reader process on a file, which must outlive the rows. The process ends with the rows. The file's first
 // bytes choose the decoder: TIFF, JPEG, HDR, PSD, GIF, WebP, PNM, SGI, JPEG 2000, DPX, Cineon, IFF, Softimage PIC.
@@ -28,4 +28,4 @@ namespace tex {
 //         out_of_memory
 Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

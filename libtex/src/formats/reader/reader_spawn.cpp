@@ -17,7 +17,7 @@
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_protocol.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // The folder of the binary that contains this code: libtex, or the program that it is linked into.
@@ -140,4 +140,4 @@ int spawn_reader(const std::string& program, std::vector<std::string> arguments,
     return posix_spawn(&child, program.c_str(), &plan.actions, &plan.attributes, argv.data(), no_environment);
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -9,7 +9,7 @@
 
 #include <sys/types.h>
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Starts the program in a new process group, with default signals and without an environment. Its standard streams are
 // /dev/null. The descriptors get the numbers from kFirstDescriptor on, and the program has no others. Because of the
@@ -18,4 +18,4 @@ namespace tex {
 int spawn_reader(const std::string& program, std::vector<std::string> arguments, std::span<const int> descriptors,
                  pid_t& child);
 
-}  // namespace tex
+}  // namespace tex::inline v1

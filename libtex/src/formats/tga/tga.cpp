@@ -15,7 +15,7 @@
 #include "formats/tga/tga_packets.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 template <int kDepth, std::size_t kChannels>
@@ -171,4 +171,4 @@ Result<std::unique_ptr<RowSource>> open_tga(InputFile& file, const ReadOptions& 
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

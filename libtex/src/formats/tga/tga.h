@@ -7,14 +7,14 @@
 #include <memory>
 #include <span>
 
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 #include "formats/row_source.h"
 #include "formats/row_target.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Whether a file that begins with these bytes may be a TGA. It has no magic number: its header is plausible.
 bool may_be_tga(std::span<const std::byte> head);
@@ -39,4 +39,4 @@ Result<std::unique_ptr<RowSource>> open_tga(InputFile& file, const ReadOptions& 
 // those of WriteBytes.
 Result<std::unique_ptr<RowTarget>> open_tga_target(const TextureHead& head, WriteBytes write);
 
-}  // namespace tex
+}  // namespace tex::inline v1

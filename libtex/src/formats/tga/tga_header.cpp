@@ -10,7 +10,7 @@
 #include "formats/claims.h"
 #include "formats/normal_mark.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 // Bits of the descriptor, the last byte of the header.
@@ -146,4 +146,4 @@ Result<TgaHeader> read_tga_header(const InputFile& file, const ReadOptions& opti
     return header;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

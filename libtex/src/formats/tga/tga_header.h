@@ -9,13 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include <tex/image.h>
-#include <tex/image_io.h>
-#include <tex/result.h>
+#include <tex/file.h>
+#include <tex/types.h>
 
 #include "files/input_file.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 inline constexpr std::size_t kTgaHeader = 18;
 inline constexpr std::string_view kTgaSignature{"TRUEVISION-XFILE.\0", 18};
@@ -58,4 +57,4 @@ inline std::array<std::uint8_t, 4> tga_color(const std::byte* stored, int depth)
 // Reads the header of a file whose size is known. Errors: as open_tga().
 Result<TgaHeader> read_tga_header(const InputFile& file, const ReadOptions& options);
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace tex {
+namespace tex::inline v1 {
 
 bool TgaPackets::take_run() {
     run_place_ = bytes_.position();
@@ -42,4 +42,4 @@ bool TgaPackets::read(int texels, std::byte* out) {
     return is_sound_;
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

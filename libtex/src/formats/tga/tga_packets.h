@@ -9,7 +9,7 @@
 
 #include "formats/byte_range.h"
 
-namespace tex {
+namespace tex::inline v1 {
 
 // Where a row begins: at a packet, or in one, of which `left` texels are left. They begin at `place`; the one texel of
 // a run is there.
@@ -48,4 +48,4 @@ private:
     std::int64_t run_place_ = 0;
 };
 
-}  // namespace tex
+}  // namespace tex::inline v1

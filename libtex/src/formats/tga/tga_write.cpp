@@ -14,7 +14,7 @@
 #include "formats/tga/tga_header.h"
 #include "threads/guard.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 constexpr int kMostSide = 65535;
@@ -72,4 +72,4 @@ Result<std::unique_ptr<RowTarget>> open_tga_target(const TextureHead& head, Writ
     });
 }
 
-}  // namespace tex
+}  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "rows/color.h"
+#include "color/color.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 #include "rows/channel_names.h"
 #include "rows/math.h"
 
-namespace tex {
+namespace tex::inline v1 {
 namespace {
 
 namespace OCIO = OCIO_NAMESPACE;
@@ -66,7 +66,7 @@ bool is_word(std::string_view text, std::string_view lower) {
 }
 
 Result<ConvertRow> built_in(SampleKind sample, int bits, const std::string& space) {
-    if (is_word(space, "linear")) return ConvertRow([](const ColorRows&, int) {});
+    if (is_word(space, "linear")) return ConvertRow([](const ColorRows&, int) { return Result<void>(); });
     if (!is_word(space, "srgb")) {
         return Error{ErrorCode::bad_option,
                      {},
@@ -76,11 +76,13 @@ Result<ConvertRow> built_in(SampleKind sample, int bits, const std::string& spac
     if (sample == SampleKind::unorm && bits <= kMostBitsOfTable) {
         return ConvertRow([table = srgb_table(bits)](const ColorRows& rows, int width) {
             for (int k = 0; k < rows.given; ++k) look_up(table, rows.row[k], width);
+            return Result<void>();
         });
     }
     return ConvertRow([](const ColorRows& rows, int width) {
         for (int k = 0; k < rows.given; ++k)
             std::transform(rows.row[k], rows.row[k] + width, rows.row[k], srgb_to_linear);
+        return Result<void>();
     });
 }
 
@@ -144,10 +146,16 @@ Result<ConvertRow> by_config(const std::string& file, const std::string& space) 
     const Result<OCIO::ConstProcessorRcPtr> processor = processor_of(*config, file, space);
     if (!processor) return processor.error();
     try {
-        return ConvertRow([on_cpu = (*processor)->getDefaultCPUProcessor()](const ColorRows& rows, int width) {
-            OCIO::PlanarImageDesc row(rows.row[0], rows.row[1], rows.row[2], nullptr, width, 1);
-            on_cpu->apply(row);
-        });
+        return ConvertRow(
+            [on_cpu = (*processor)->getDefaultCPUProcessor(), file](const ColorRows& rows, int width) -> Result<void> {
+                try {
+                    OCIO::PlanarImageDesc row(rows.row[0], rows.row[1], rows.row[2], nullptr, width, 1);
+                    on_cpu->apply(row);
+                    return {};
+                } catch (const OCIO::Exception& thrown) {
+                    return conversion_fails(file, thrown);
+                }
+            });
     } catch (const OCIO::Exception& thrown) {
         return conversion_fails(file, thrown);
     }
@@ -178,39 +186,15 @@ Result<std::vector<std::string>> files_of_conversion(const std::string& file, co
     return files;
 }
 
-Result<LinearRows> LinearRows::make(const std::vector<std::string>& names, SampleKind sample, int bits,
-                                    const std::string& config, const std::string& space) {
-    LinearRows rows;
-    rows.config_ = config;
-    rows.planes_ = colour_planes(names);
-    if (rows.planes_.empty()) {
+Result<LinearRows> linear_rows(const std::vector<std::string>& names, SampleKind sample, int bits,
+                               const std::string& config, const std::string& space) {
+    std::vector<std::size_t> planes = colour_planes(names);
+    if (planes.empty()) {
         return Error{ErrorCode::bad_option, {}, "a colour space needs the channels R, G and B, or a single one"};
     }
     Result<ConvertRow> convert = config.empty() ? built_in(sample, bits, space) : by_config(config, space);
     if (!convert) return convert.error();
-    rows.convert_ = std::move(*convert);
-    return rows;
+    return LinearRows(std::move(planes), std::move(*convert));
 }
 
-Result<void> LinearRows::convert(Image& image, int count) const {
-    const int width = image.extent().width;
-    ColorRows rows{{}, static_cast<int>(planes_.size())};
-    Plane<float> copies;  // copies of a grey row
-    if (rows.given == 1) copies = Plane<float>(Extent{width, 2});
-    try {
-        for (int j = 0; j < count; ++j) {
-            for (int k = 0; k < rows.given; ++k)
-                rows.row[k] = image.planes[planes_[static_cast<std::size_t>(k)]].row(j);
-            for (int k = rows.given; k < 3; ++k) {
-                rows.row[k] = copies.row(k - 1);
-                std::copy_n(rows.row[0], width, rows.row[k]);
-            }
-            convert_(rows, width);
-        }
-        return {};
-    } catch (const OCIO::Exception& thrown) {
-        return conversion_fails(config_, thrown);
-    }
-}
-
-}  // namespace tex
+}  // namespace tex::inline v1
