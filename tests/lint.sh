@@ -242,6 +242,13 @@ ban 'std::(cout|cerr|clog|exit|abort|getenv)|[^a-z_](fprintf|puts|perror|getenv|
 ban 'MulAdd|NegMulAdd|MulSub|ApproximateReciprocal|std::fma\b|std::thread' \
     'results would depend on the machine' "${library[@]}"
 
+# CMakeLists.txt states the version. What other systems read states it again, and must follow.
+version=$(sed -n 's/^project(libtex VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
+for file in libtex/debian/changelog samples/ci/action.yml samples/farm/kubernetes.yml tests/consumer/manifest.txt \
+    samples/packaging/{homebrew/libtex.rb,nix/default.nix,vcpkg/libtex/vcpkg.json}; do
+    grep -qF "$version" "$file" || complain "$file does not state version $version, which CMakeLists.txt has"
+done
+
 # -- documents and scripts ------------------------------------------------------------------------------------
 if [ -e README.md ]; then
     [ "$(wc -l <README.md)" -le 150 ] || complain "README.md is a front page: at most 150 lines"

@@ -128,7 +128,7 @@ fuzz() {
 # Makes the Debian packages from the objects of the release, installs them, uses each, and removes them without a trace.
 # On your own machine this needs root.
 package() {
-    local debs packages=(libtex0 libtex-dev libtex-tools libtex-reader-oiio python3-libtex libtex-oiio) status=0
+    local debs packages=(libtex1 libtex-dev libtex-tools libtex-reader-oiio python3-libtex libtex-oiio) status=0
     ctest --preset release --output-junit "$results/package.xml" -R '^consumer[.]packages$' || return 1
     mapfile -t debs < <(find build/release/consumer-packages -maxdepth 1 -name '*.deb')
     lintian --allow-root --fail-on error,warning "${debs[@]}" || status=1

@@ -42,7 +42,7 @@ def collect(folder, stage):
     subprocess.run(["cmake", "--install", folder, "--component", "python", "--prefix", stage], check=True,
                    stdout=sys.stderr)
     package = next(stage.rglob("_tex.*.so")).parent
-    beside = [folder / name for name in ("tex-reader", "tex-reader-oiio", "tex-mesh-reader", "libtex.so.0")]
+    beside = [folder / name for name in ("tex-reader", "tex-reader-oiio", "tex-mesh-reader", "libtex.so.1")]
     return {f"tex/{path.name}": path for path in sorted([*package.iterdir(), *filter(Path.exists, beside)])}
 
 

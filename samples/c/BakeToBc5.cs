@@ -8,7 +8,7 @@ using System;
 using System.Runtime.InteropServices;
 
 static unsafe class BakeToBc5 {
-    const string Library = "libtex.so.0";
+    const string Library = "libtex.so.1";
     const int Side = 64, Levels = 7, Bc5Unorm = 5;
 
     [StructLayout(LayoutKind.Sequential)]

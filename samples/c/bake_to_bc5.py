@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""bake_to_bc5.c in Python, through ctypes: bake_to_bc5.py [libtex.so.0]. (The module `tex` is the comfortable way.)"""
+"""bake_to_bc5.c in Python, through ctypes: bake_to_bc5.py [libtex.so.1]. (The module `tex` is the comfortable way.)"""
 
 import ctypes
 import sys
@@ -26,7 +26,7 @@ def options(name, *members):
 
 
 def main():
-    tex = ctypes.CDLL(sys.argv[1] if len(sys.argv) > 1 else "libtex.so.0")
+    tex = ctypes.CDLL(sys.argv[1] if len(sys.argv) > 1 else "libtex.so.1")
     tex.tex_error_text.restype = ctypes.c_char_p
     for function in (tex.tex_bake_size, tex.tex_mip_size, tex.tex_row_bytes, tex.tex_level_bytes):
         function.restype = c_size_t

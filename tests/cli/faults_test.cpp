@@ -56,8 +56,8 @@ std::string install(const Scratch& folder, const std::string& command, const std
         std::filesystem::create_directory(folder.path(name));
     const std::string program = folder.path("bin/" + command), script = "libexec/libtex/tex-reader";
     std::filesystem::copy_file(std::filesystem::path(TEX_BINARY_DIR) / command, program);
-    const std::filesystem::path library = TEX_BINARY_DIR "/libtex.so.0";
-    if (std::filesystem::exists(library)) std::filesystem::copy_file(library, folder.path("lib/libtex.so.0"));
+    const std::filesystem::path library = TEX_BINARY_DIR "/libtex.so.1";
+    if (std::filesystem::exists(library)) std::filesystem::copy_file(library, folder.path("lib/libtex.so.1"));
     folder.write(script, "#!/bin/sh\n" + reader);
     std::filesystem::permissions(folder.path(script), std::filesystem::perms::owner_all);
     return program;

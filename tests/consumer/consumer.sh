@@ -110,35 +110,6 @@ package() {
     done
     debian_files+=$'\n'"\$a share/lintian/overrides/$1"
 }
-# Earlier builds made one package, libtex 0.1.0. In a scratch system, dpkg sees that the new packages break it and lets
-# them take its files. The old package is then removed, as apt does it, and the files stay.
-replace_old_package() {
-    local old=$scratch/old system=$scratch/system file name deb
-    local options=(--root="$system" --force-not-root --force-depends --force-script-chrootless)
-    local -x PATH=$PATH:/usr/sbin:/sbin
-    mkdir -p "$old/DEBIAN" "$system/var/lib/dpkg"/{info,updates}
-    touch "$system/var/lib/dpkg/status"
-    for file in $(cd "$root" && find usr -name bake-normals -o -name tex.h -o -name 'libtex.so*'); do
-        mkdir -p "$old/${file%/*}"
-        touch "$old/$file"
-    done
-    printf '%s\n' 'Package: libtex' 'Version: 0.1.0' "Architecture: $(dpkg --print-architecture)" \
-        'Maintainer: nobody <nobody@example.org>' 'Description: the package of earlier builds' >"$old/DEBIAN/control"
-    dpkg-deb --root-owner-group --build "$old" "$system/old.deb" >/dev/null
-    quietly 'dpkg cannot install the old package' dpkg "${options[@]}" --install "$system/old.deb"
-    for name in libtex0 libtex-dev libtex-tools; do
-        deb=$(find "$scratch" -maxdepth 1 -name "${name}_*.deb")
-        if [ "$name" = libtex0 ] && dpkg "${options[@]}" --unpack "$deb" >"$scratch/log" 2>&1; then
-            fail "dpkg does not see that $name breaks the old package libtex"
-        fi
-        quietly "$name does not take the files of the old package libtex" \
-            dpkg "${options[@]}" --auto-deconfigure --unpack "$deb"
-    done
-    quietly 'dpkg cannot remove the old package' dpkg "${options[@]}" --remove libtex
-    for file in bin/bake-normals include/tex/tex.h; do
-        cmp "$root/usr/$file" "$system/usr/$file" || fail "the old package libtex keeps $file"
-    done
-}
 # What is in Debian's own places; package() adds the documents of each package.
 debian_files='s|/zsh/site-functions/|/zsh/vendor-completions/|; s|^share/man/.*|&.gz|; /doc\/libtex\/LICENSE/d
 s|doc/libtex/CHANGELOG.md|doc/libtex-dev/changelog.gz|; s|doc/libtex/|doc/libtex-dev/|'
@@ -263,18 +234,17 @@ packages)
     quietly 'the packages cannot be built' cmake --build "$scratch/build"
     quietly 'cpack failed' cpack --config "$scratch/build/CPackConfig.cmake" -B "$scratch"
     root=$scratch/root
-    package libtex0 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libopenexr libtbb12 libhwy \
+    package libtex1 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libopenexr libtbb12 libhwy \
         libopencolorio
     case $depends in *openimageio* | *assimp* | *draco*) fail "the library needs the readers: $depends" ;; esac
-    package libtex-dev 'libtex0 (= '
-    package libtex-tools 'libtex0 (= ' libtiff6 libjpeg62-turbo libassimp libdraco libseccomp2
+    package libtex-dev 'libtex1 (= '
+    package libtex-tools 'libtex1 (= ' libtiff6 libjpeg62-turbo libassimp libdraco libseccomp2
     case $depends in *openimageio*) fail "the commands need OpenImageIO: $depends" ;; esac
     package libtex-reader-oiio libopenimageio libseccomp2
-    package python3-libtex 'libtex0 (= ' 'python3 (>= 3.11)' python3-numpy
-    package libtex-oiio 'libtex0 (= ' libopenimageio
-    replace_old_package
+    package python3-libtex 'libtex1 (= ' 'python3 (>= 3.11)' python3-numpy
+    package libtex-oiio 'libtex1 (= ' libopenimageio
     check_files "$root/usr" "$debian_files"
-    LD_LIBRARY_PATH=$(dirname "$(find "$root" -name libtex.so.0)")
+    LD_LIBRARY_PATH=$(dirname "$(find "$root" -name libtex.so.1)")
     export LD_LIBRARY_PATH
     "$root/usr/bin/bake-normals" "$samples/bricks.png" -o "$scratch/bricks.dds" --bumpiness 12
     check_bake "$scratch/bricks.dds"

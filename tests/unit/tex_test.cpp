@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
-TEST(Tex, VersionIsSet) { EXPECT_STREQ(tex::version(), "0.1.0"); }
+TEST(Tex, VersionIsSet) { EXPECT_STREQ(tex::version(), "1.0.0"); }
 
 TEST(Tex, RuntimeNamesTheInstructionSetAndTheLibraries) {
     const tex::Runtime runtime = tex::runtime();

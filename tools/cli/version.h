@@ -9,7 +9,7 @@
 
 namespace tex::cli {
 
-// "bake-normals 0.1.0".
+// "bake-normals 1.0.0".
 [[nodiscard]] std::string version_text(const Command& command);
 
 // One JSON object: the versions of the command, of the libtex that it runs with and of the libraries that they are

@@ -80,7 +80,7 @@
 
 namespace tex::inline v1 {
 
-// The version of the library that is running, not of the header: "0.1.0".
+// The version of the library that is running, not of the header: "1.0.0".
 [[nodiscard]] TEX_API const char* version();
 
 // The environment of libtex on this machine, for reports.

@@ -78,7 +78,7 @@ enum tex_error {
 // What a code means, as a clause without a full stop; never null.
 TEX_C_API const char* tex_error_text(int32_t error);
 
-// The version of the library that is running: "0.1.0".
+// The version of the library that is running: "1.0.0".
 TEX_C_API const char* tex_version(void);
 
 // ---- values ------------------------------------------------------------------------------------------------------

@@ -45,7 +45,7 @@ class Libtex < Formula
   end
 
   test do
-    COMMANDS.each { |command| assert_match "0.1.0", shell_output("#{bin}/#{command} --version") }
+    COMMANDS.each { |command| assert_match "1.0.0", shell_output("#{bin}/#{command} --version") }
     FILES.each { |file| assert_path_exists prefix/file }
     system bin/"bake-normals", test_fixtures("test.png"), "-o", "normals.dds"
     assert_path_exists testpath/"normals.dds"

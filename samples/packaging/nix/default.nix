@@ -28,7 +28,7 @@
 }:
 
 let
-  version = "0.1.0";
+  version = "1.0.0";
   commands = [
     "bake-normals"
     "blend-normals"
