@@ -52,8 +52,8 @@
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
 //     tex_c.h     the same for C, Rust and C#
 //
-// Options stand beside their verb. Everything is in the inline namespace v1, so that programs that were built for
-// another major version cannot link by mistake.
+// Options stand beside their verb. Everything is in the inline namespace v1. Its number is that of the shared library
+// (libtex.so.1): both change with the binary interface, so that no program links to one that it was not built for.
 //
 // Threads: any number of threads may call any function at the same time, on different objects or on the same const
 // object.
