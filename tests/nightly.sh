@@ -122,7 +122,7 @@ fuzz() {
     wait
     failed=$(find "$results" -name 'fuzz-*.failed' | wc -l)
     count fuzz "$ran" "$failed"
-    [ "$failed" -eq 0 ]
+    script draco tests/fuzz/draco.py "${FUZZ_SECONDS:-60}" && [ "$failed" -eq 0 ]
 }
 
 # Makes the Debian packages from the objects of the release, installs them, uses each, and removes them without a trace.

@@ -204,6 +204,7 @@ py::object seams_of(const std::optional<SeamEvidence>& seams) {
     facts["p99"] = seams->p99;
     facts["worst"] = seams->worst;
     facts["worst_edge"] = seams->worst_edge;
+    facts["usual"] = seams->usual;
     return facts;
 }
 

@@ -152,6 +152,8 @@ void add_part(Module& module) {
                   [](const py::object& self) { return some_rows_of(self.cast<const MeshPart&>().colors, self); })
         .property("quads", "list[int]", "Triangles that, each with the next one, were a quad in the file.",
                   [](const MeshPart& p) { return p.quads; })
+        .property("variants", "list[int]", "Other materials that the part can have (KHR_materials_variants).",
+                  [](const MeshPart& p) { return p.variants; })
         .method("__repr__", "(self) -> str",
                 [](const MeshPart& p) {
                     return str_of(fmt::format("<tex.MeshPart {}: {} triangles>", shown_text(p.name), p.triangles()));

@@ -206,6 +206,7 @@ void each_part(MeshPart& o, F& f) {
     f(o.uvs);
     f(o.indices);
     f(o.quads);
+    f(o.variants);
     f(o.colors);
 }
 

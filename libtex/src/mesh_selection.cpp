@@ -76,6 +76,7 @@ Result<const MeshNode*> node_called(const Mesh& mesh, const std::string& name) {
 // The parts that are chosen, and what they have in common.
 struct Choice {
     std::vector<const MeshPart*> parts;
+    int material = -1;  // that the parts are to have
     const MeshNode* node = nullptr;
     int uv_set = 0;
     TangentSource source = TangentSource::mikktspace;
@@ -99,12 +100,18 @@ Result<void> choose_parts(const Mesh& mesh, const MeshSelection& selection, Choi
         choice.node = *called;
     }
     for (const MeshPart& part : mesh.parts) {
-        if (!selection.material.empty() && part.material != material) continue;
+        if (!selection.material.empty() && !part.can_have(material)) continue;
         if (selection.primitive && part.primitive != *selection.primitive) continue;
         if (choice.node != nullptr && part.mesh != choice.node->mesh) continue;
         choice.parts.push_back(&part);
     }
-    if (choice.parts.empty()) return unfit("has no part with this material, primitive and node");
+    if (choice.parts.empty()) {
+        const bool by_material = !selection.material.empty() && !selection.primitive && selection.node.empty();
+        return unfit(by_material ? "has no triangles with the material " + material_name(mesh, material)
+                                 : "has no part with this material, primitive and node");
+    }
+    choice.material = selection.material.empty() ? choice.parts.front()->material : material;
+    if (!selection.material.empty()) return {};
     std::vector<std::string> names;
     for (const MeshPart* part : choice.parts) {
         std::string name = material_name(mesh, part->material);
@@ -140,7 +147,7 @@ Result<void> leave_out_parts_without_uvs(Choice& choice) {
 }
 
 void choose_uvs(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
-    const int material = choice.parts.front()->material;
+    const int material = choice.material;
     if (material < 0 || static_cast<std::size_t>(material) >= mesh.materials.size()) {
         choice.uv_set = selection.uv_set.value_or(0);
         choice.transform = selection.uv_transform.value_or(UvTransform{});
@@ -260,7 +267,7 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
         if (!tangents) return tangents.error();
         const MeshNode* const node = choice.in_scene ? node_of(mesh, *part) : choice.node;
         joined.pieces.push_back(SelectedPiece{node != nullptr && !node->name.empty() ? node->name : part->name,
-                                              plain_material_name(mesh, part->material), joined.part.triangles()});
+                                              plain_material_name(mesh, choice.material), joined.part.triangles()});
         if (node == nullptr) {
             join(joined, *part, choice.uv_set, *tangents);
             continue;

@@ -12,6 +12,7 @@
 
 #include "files/beside.h"
 #include "files/input_file.h"
+#include "formats/codecs.h"
 #include "formats/reader/reader_mesh.h"
 #include "formats/texture_rows.h"
 #include "mesh/gltf.h"
@@ -26,9 +27,7 @@ enum class Geometry { read, left_out };
 
 Result<Model> parse_model(const std::string& path, std::span<const std::byte> bytes, const MeshReadOptions& options,
                           Geometry geometry) {
-    const LoadBeside load = [&](const std::string& name) {
-        return read_at_most(beside(path, name), options.max_bytes);
-    };
+    const LoadBeside load = [&](const std::string& name) { return read_beside(path, name, options.max_bytes); };
     const DecodeDraco draco = [&](std::span<const std::byte> request) {
         return decode_draco_with_reader(path, request, options.reader);
     };
@@ -55,7 +54,10 @@ Result<Model> parse_model(const std::string& path, std::span<const std::byte> by
     model.images = gltf_images(root, buffers, *maps);
     model.maps = std::move(*maps);
     for (ModelImage& image : model.images) {
-        if (!image.file.empty()) image.file = beside(path, image.file);
+        if (image.file.empty()) continue;
+        image.file = beside(path, image.file);
+        if (const auto regular = check_regular(image.file); !regular)
+            image.error = Error{regular.error().code, {}, regular.error().reason};
     }
     return model;
 }
@@ -64,6 +66,12 @@ std::string material_text(const Model& model, int material) {
     const auto index = static_cast<std::size_t>(material);
     const bool named = index < model.mesh.materials.size() && !model.mesh.materials[index].name.empty();
     return named ? model.mesh.materials[index].name : std::to_string(material);
+}
+
+bool is_called_model(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension == ".gltf" || extension == ".glb";
 }
 
 const ModelImage* image_of(const Model& model, const ModelMap& map) {
@@ -77,7 +85,9 @@ bool is_model(const std::string& path) {
     std::error_code error;
     if (path == "-" || !std::filesystem::is_regular_file(path, error)) return false;
     const auto file = InputFile::open(path);
-    return file && is_gltf(file->head());
+    if (!file) return false;
+    const Codec& codec = codec_for(file->head());
+    return is_gltf(file->head()) || (is_called_model(path) && codec.magic.empty() && codec.claims == nullptr);
 }
 
 namespace {
@@ -113,7 +123,7 @@ std::string map_name(const Model& model, const ModelMap& map) {
 Result<Texture> read_map(const Model& model, const ModelMap& map, const ReadOptions& options) {
     return guarded([&]() -> Result<Texture> {
         const ModelImage* const image = image_of(model, map);
-        if (image == nullptr) return Error{ErrorCode::bad_data, model.file, map_name(model, map) + " can be read"};
+        if (image == nullptr) return Error{ErrorCode::bad_data, model.file, "its texture has no image"};
         const std::string name = model.file + ": " + image->name;
         if (image->error) return image->error->of(name);
         if (!image->file.empty()) return read_texture(image->file, options);

@@ -2,6 +2,8 @@
 // pack-normals, convert-normals and preview-normals with glTF models among their inputs. What they make of a map in a
 // model is what they make of the same map in a file.
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -173,7 +175,9 @@ TEST_F(ModelInputs, WhatCannotBeIsSaid) {
     refuses("preview-normals N802*.glb -o x.png --shape sphere", 2, "--shape is not for models");
     refuses("preview-normals N802*.glb n.png -o x.png --show tangents", 2, "--show tangents needs --mesh, or a model");
     refuses("preview-normals n.png -o x.png --decoder three", 2, "--decoder needs --mesh, or a model");
-    refuses("mip-normals N802*.glb -o x.dds", 4, "N802");
+    scratch_.write("words.gltf", "These are words.\n");
+    refuses("pack-normals words.gltf --out-dir out", 4, "words.gltf: is not a glTF model");
+    refuses("convert-normals words.gltf --out-dir out --to object", 4, "words.gltf: is not a glTF model");
     scratch_.write("bad.glb", "glTF\2\0\0\0");
     scratch_.write("empty.gltf", R"({"asset":{"version":"2.0"}})");
     refuses("pack-normals bad.glb -o x.dds", 4, "bad.glb");
@@ -185,6 +189,118 @@ TEST_F(ModelInputs, WhatCannotBeIsSaid) {
     refuses("preview-normals bad.glb N802*.glb -o x.png", 4, "bad.glb");
     EXPECT_TRUE(scratch_.has("x.png"));  // a sheet with an empty cell
     refuses("pack-normals N802*.glb -o N802-used-as-color.glb --container dds", 2, "is the input");
+}
+
+// A map of the material "m_0" and one of the first material "m" must not meet.
+TEST_F(ModelInputs, NamesThatMaterialsHaveAreLeftToThem) {
+    does("bake-normals " TEX_SOURCE_DIR "/samples/waves.png -o n.png");
+    scratch_.write("m.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"n.png"}],"textures":[{"source":0}],
+        "materials":[{"name":"m","normalTexture":{"index":0}},{"name":"m","normalTexture":{"index":0}},
+        {"name":"m_0","normalTexture":{"index":0}},{"name":"m_1_1","normalTexture":{"index":0}}]})");
+    does("pack-normals m.gltf --out-dir out");
+    for (const std::string name : {"m_0_0", "m_1", "m_0", "m_1_1"})
+        EXPECT_TRUE(scratch_.has("out/m_" + name + ".dds")) << name;
+}
+
+// What is known of a model is found once, not for each of its maps: that took minutes.
+TEST_F(ModelInputs, ModelsMayHaveManyThousandMaterials) {
+    std::string materials;
+    for (int k = 0; k < 10000; ++k) {
+        materials += (k == 0 ? "" : ",") + std::string(R"({"name":"m)") + std::to_string(k / 2) +
+                     R"(","normalTexture":{"index":0}})";
+    }
+    scratch_.write("m.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"n.png"}],"textures":[{"source":0}],)"
+                             R"("materials":[)" +
+                                 materials + "]}");
+    refuses("pack-normals m.gltf --out-dir out --name '{stem}.dds'", 2, "{material} in --name separates them");
+}
+
+// Commands that take pictures alone say which take models.
+TEST_F(ModelInputs, OtherCommandsNameThoseThatTakeModels) {
+    const std::string reason =
+        "a glTF model, or other JSON, not a picture: check-normals, convert-normals, pack-normals "
+        "and preview-normals read the normal maps of a model if its file is given\n";
+    does("bake-normals " TEX_SOURCE_DIR "/samples/waves.png -o n.png");
+    scratch_.write("text.gltf", " \n{\"asset\":{\"version\":\"2.0\"}}");
+    does("cp N802*.glb model.glb");
+    for (const std::string model : {"model.glb", "text.gltf"}) {
+        refuses("mip-normals " + model + " -o x.dds", 4, model + ": " + reason);
+        refuses("scale-normals " + model + " -o x.dds --scale 2", 4, model + ": " + reason);
+        refuses("unpack-normals " + model + " -o x.png", 4, model + ": " + reason);
+        refuses("bake-normals " + model + " -o x.png", 4, model + ": " + reason);
+        refuses("blend-normals " + model + " n.png -o x.png", 4, model + ": " + reason);
+        refuses("blend-normals n.png " + model + " -o x.png", 4, model + ": " + reason);
+        refuses("integrate-normals " + model + " -o x.png", 4, model + ": " + reason);
+        refuses("compare-normals n.png " + model, 4, model + ": " + reason);
+        refuses("pack-normals - -o x.png < " + model, 4, "-: " + reason);
+        scratch_.write("normals.toml", "version = 1\n[[rule]]\nmatch = \"" + model + "\"\nsteps = [{ mip = {} }]\n");
+        refuses("build-normals", 4, model + ": " + reason);
+    }
+    EXPECT_FALSE(scratch_.has("x.png"));
+}
+
+// What the rules of models advise ends their findings.
+TEST_F(ModelInputs, AdviceOfRulesIsRight) {
+    using Json = nlohmann::json;
+    does("cp " TEX_SOURCE_DIR "/samples/bricks.png other.png");
+    // Changes the JSON of a sample, and returns the rules that are then found.
+    const auto rules_after = [&](const std::string& sample, const auto& change) {
+        std::string bytes = scratch_.read(sample);
+        const auto word_at = [&](std::size_t at) {
+            std::uint32_t word = 0;
+            std::memcpy(&word, bytes.data() + at, sizeof word);
+            return word;
+        };
+        const std::size_t length = word_at(12);
+        Json document = Json::parse(bytes.substr(20, length));
+        change(document);
+        std::string text = document.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        bytes.replace(20, length, text);
+        const auto put = [&](std::size_t at, std::size_t value) {
+            const auto word = static_cast<std::uint32_t>(value);
+            std::memcpy(bytes.data() + at, &word, sizeof word);
+        };
+        put(8, bytes.size());
+        put(12, text.size());
+        scratch_.write("mended.glb", bytes);
+        std::string rules;
+        const Ran ran = go("check-normals mended.glb --json");
+        const auto findings = Json::parse(ran.out)["findings"];
+        for (const Json& finding : findings) rules += finding["id"].get<std::string>() + " ";
+        return rules;
+    };
+    const auto use_another_image = [](Json& document, const std::string& slot) {
+        document["images"].push_back({{"uri", "other.png"}});
+        document["textures"].push_back({{"source", document["images"].size() - 1}});
+        Json& material = document["materials"][0];
+        Json& texture = slot == "baseColorTexture" ? material["pbrMetallicRoughness"][slot] : material[slot];
+        texture["index"] = document["textures"].size() - 1;
+    };
+    does("pack-normals N801*.glb -o three.png --for gltf");
+    EXPECT_EQ(rules_after("N801-two-channel-in-model.glb",
+                          [](Json& document) {
+                              document["images"] = {{{"uri", "three.png"}}};
+                              document["textures"] = {{{"source", 0}}};
+                          })
+                  .find("N801"),
+              std::string::npos);
+    const auto other_color = [&](Json& document) { use_another_image(document, "baseColorTexture"); };
+    EXPECT_EQ(rules_after("N802-used-as-color.glb", other_color), "");
+    const auto first_set = [](Json& document) { document["materials"][0]["normalTexture"]["texCoord"] = 0; };
+    EXPECT_EQ(rules_after("N803-uv-set-missing.glb", first_set), "");
+    const auto scale_of_1 = [](Json& document) { document["materials"][0]["normalTexture"]["scale"] = 1; };
+    EXPECT_EQ(rules_after("N804-scale-not-positive.glb", scale_of_1), "");
+    const auto one_sided = [](Json& document) { document["materials"][0]["doubleSided"] = false; };
+    EXPECT_EQ(rules_after("N805-mirrored-and-double-sided.glb", one_sided).find("N805"), std::string::npos);
+    const auto other_data = [&](Json& document) { use_another_image(document, "occlusionTexture"); };
+    EXPECT_EQ(rules_after("N806-data-in-normal-slot.glb", other_data), "");
+    // Any normals will do.
+    const auto with_normals = [](Json& document) {
+        auto& attributes = document["meshes"][0]["primitives"][0]["attributes"];
+        attributes["NORMAL"] = attributes["POSITION"];
+    };
+    EXPECT_EQ(rules_after("N807-mesh-not-examined.glb", with_normals).find("N807"), std::string::npos);
 }
 
 TEST_F(ModelInputs, DepfilesAndUpdatesKnowTheFilesOfAModel) {

@@ -55,6 +55,7 @@ struct Sample {
 
 constexpr Sample kSamples[] = {
     {"Plane", "AssetGenerator_plane/Mesh_PrimitiveAttribute_06.gltf", "", false, false},
+    {"PlaneWithoutTangents", "AssetGenerator_plane/Mesh_PrimitiveAttribute_05.gltf", "", false, false},
     {"Suzanne", "Suzanne/02_suzanne.gltf", "", false, true},
     {"Helmet", "FlightHelmet/FlightHelmet.gltf", "GlassPlasticMat", false, true},  // no texels are shared
     {"NormalTangentTest", "NormalTangentTest.glb", "", false, true},

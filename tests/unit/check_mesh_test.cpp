@@ -160,6 +160,9 @@ TEST(CheckMesh, TrianglesWithoutAreaInTheMapAreNotCompared) {
     EXPECT_EQ(findings[0].rule->id, "N706");
     EXPECT_EQ(findings[0].figure, 1.0);
     EXPECT_NE(findings[0].message.find("128 of 128 triangles"), std::string::npos) << findings[0].message;
+    EXPECT_EQ(findings[0].message.find("KHR_texture_transform"), std::string::npos) << findings[0].message;
+    selected.has_transform = true;  // as a material does that mirrors its map
+    EXPECT_NE(findings_of(selected)[0].message.find("KHR_texture_transform of the material makes"), std::string::npos);
 }
 
 TEST(CheckMesh, CountsMirroredTrianglesAndSharedTexels) {

@@ -213,8 +213,8 @@ TEST(MeshFit, FindsWrongSpacesOnRealModels) {
     }
 }
 
-// The limits that check-normals prints beside the mean, and the table in its manual, which TEX_SEAMS=all in the
-// environment prints; else a part of it is tested.
+// What check-normals calls usual, and the table in its manual, which TEX_SEAMS=all in the environment prints; else a
+// part of it is tested. Of HoseMat, few seams turn the map, so that green the other way shows little there.
 TEST(MeshFit, MapsThatFitHaveAMeanUnderTheUsualOne) {
     const fs::path folder = TEX_SOURCE_DIR "/../shared/data/mesh";
     if (!fs::exists(folder)) GTEST_SKIP() << "no shared data";
@@ -237,19 +237,32 @@ TEST(MeshFit, MapsThatFitHaveAMeanUnderTheUsualOne) {
         selection.material = material;
         const auto selected = select_part(*mesh, selection);
         ASSERT_TRUE(selected);
-        for (const auto& [side, usual] : {std::pair{512, 21.0}, {1024, 10.0}, {2048, 5.0}}) {
-            if (side != 512 && !all) continue;
-            const NormalMap surface = wavy_surface(selected->part, {side, side}, 6.0);
+        const struct {
+            int side;
+            double waves;
+            Decoder decoder;
+        } maps[] = {{512, 6.0, Decoder::gltf},   {1024, 6.0, Decoder::gltf},  {2048, 6.0, Decoder::gltf},
+                    {512, 6.0, Decoder::godot},  {1024, 6.0, Decoder::godot}, {512, 2.0, Decoder::gltf},
+                    {1024, 2.0, Decoder::three}, {2048, 2.0, Decoder::godot}};
+        for (const auto& map : maps) {
+            const int side = map.side;
+            const double waves = map.waves;
+            const Decoder decoder = map.decoder;
+            if (!all && (side != 512 || waves != 6.0)) continue;
+            const std::string where = std::string(file) + " " + material + " " + std::to_string(side) + " " +
+                                      std::string(name_of(kDecoderNames, decoder)) + " " + std::to_string(waves);
+            const NormalMap surface = wavy_surface(selected->part, {side, side}, waves);
             const auto seams_of = [&](YAxis y) {
-                return fit_of(baked(surface, {selected->part, selected->tangents}, y), *selected).seams;
+                return fit_of(baked(surface, {selected->part, selected->tangents, 0, decoder}, y), *selected, decoder)
+                    .seams;
             };
             const auto right = seams_of(YAxis::up), down = seams_of(YAxis::down);
             ASSERT_TRUE(right && down);
-            EXPECT_LT(right->mean, usual) << file << " " << material << " " << side;
-            EXPECT_GT(down->mean, right->mean) << file << " " << material << " " << side;
+            EXPECT_LT(right->mean, right->usual) << where;
+            EXPECT_GT(down->mean, std::string(material) == "HoseMat" ? right->mean : down->usual) << where;
             if (all)
-                std::printf("%s %s %d: mean %.2f, p99 %.2f; y down %.2f\n", file, material, side, right->mean,
-                            right->p99, down->mean);
+                std::printf("%s: mean %.2f, usual %.1f, p99 %.2f; y down %.2f\n", where.c_str(), right->mean,
+                            right->usual, right->p99, down->mean);
         }
     }
 }
@@ -296,6 +309,7 @@ TEST(MeshFit, FindsNothingInTheMapsOfRealModels) {
         ASSERT_TRUE(fit.seams) << map;
         EXPECT_GT(fit.seams->edges, 0) << map;
         EXPECT_LE(fit.seams->mean, fit.seams->p99) << map;
+        EXPECT_LT(fit.seams->mean, fit.seams->usual) << map;
     };
     expect_nothing("Suzanne/02_suzanne.gltf", "", "Suzanne/02_suzanne_Normal.png");
     for (const std::string name : {"RubberWood", "GlassPlastic", "MetalParts", "LeatherParts", "Lenses"}) {

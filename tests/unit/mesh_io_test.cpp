@@ -176,9 +176,57 @@ TEST_F(MeshIo, ReadsBuffersBesideTheFileAndInUris) {
     const auto decoded = decode_data_uri("data:application/octet-stream;base64,AAECAw==");
     ASSERT_TRUE(decoded);
     EXPECT_EQ(*decoded, (std::vector<std::byte>{std::byte{0}, std::byte{1}, std::byte{2}, std::byte{3}}));
-    EXPECT_FALSE(decode_data_uri("data:text/plain,abc"));
     EXPECT_FALSE(decode_data_uri("data:;base64,A"));
     EXPECT_FALSE(decode_data_uri("data:;base64,A?=="));
+    EXPECT_FALSE(decode_data_uri("data:text/plain"));
+    EXPECT_FALSE(decode_data_uri("data:text/plain,a%4"));
+    // RFC 2397 and RFC 3986: what is not base64 has bytes as %00, as base64 may have; the scheme has no case.
+    EXPECT_EQ(*decode_data_uri("data:,%00%01%02%03"), *decoded);
+    EXPECT_EQ(*decode_data_uri("data:;base64,AAECAw%3D%3d"), *decoded);
+    maker.uri = "\"uri\":\"DATA:application/octet-stream,";
+    for (const char c : maker.binary) {
+        constexpr const char* kDigits = "0123456789abcdef";
+        const auto byte = static_cast<unsigned char>(c);
+        maker.uri += std::string("%") + kDigits[byte / 16] + kDigits[byte % 16];
+    }
+    maker.uri += "\",";
+    const auto inside = read(maker.json(kPrimitive));
+    ASSERT_TRUE(inside) << inside.error().reason;
+    EXPECT_EQ(inside->parts[0].triangles(), 2u);
+}
+
+TEST_F(MeshIo, ReadsWhatTheValidatorFindsValidOrEnginesRead) {
+    const GltfMaker maker = square();
+    const auto reads = [&](const std::string& bytes) {
+        const auto mesh = read(bytes);
+        EXPECT_TRUE(mesh) << mesh.error().reason;
+        return mesh && mesh->parts.at(0).triangles() == 2;
+    };
+    const std::string deep = ",\"extras\":" + std::string(1000, '[') + std::string(1000, ']');
+    EXPECT_TRUE(reads(maker.glb(kPrimitive, deep)));
+    GltfMaker text = maker;
+    text.uri = "\"uri\":\"a.bin\",";
+    EXPECT_NE(write("a.bin", maker.binary), "");
+    EXPECT_TRUE(reads("\xef\xbb\xbf" + text.json(kPrimitive)));  // with a byte order mark
+}
+
+TEST_F(MeshIo, ReadsTheMaterialsOfVariants) {
+    const std::string materials = R"(,"materials":[{"name":"a"},{"name":"b"},{"name":"c"}])";
+    const auto with = [&](const std::string& mappings) {
+        return read(square().glb(kPrimitive.substr(0, kPrimitive.rfind('}')) +
+                                     R"(,"material":1,"extensions":{"KHR_materials_variants":{"mappings":[)" +
+                                     mappings + "]}}}",
+                                 materials));
+    };
+    const auto mesh = with(R"({"material":2},{"material":0},{"material":2},{"material":1})");
+    ASSERT_TRUE(mesh) << mesh.error().reason;
+    EXPECT_EQ(mesh->parts[0].material, 1);
+    EXPECT_EQ(mesh->parts[0].variants, (std::vector<int>{0, 2}));
+    EXPECT_TRUE(mesh->parts[0].can_have(0) && mesh->parts[0].can_have(1) && mesh->parts[0].can_have(2));
+    EXPECT_FALSE(mesh->parts[0].can_have(-1));
+    const auto none = with(R"({"material":3})");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().reason, "mesh 0, primitive 0: the material of a variant does not exist");
 }
 
 TEST_F(MeshIo, NamesTheFilesThatAMeshConsistsOf) {
@@ -303,9 +351,16 @@ TEST_F(MeshIo, RefusesDamagedJsonAndNodes) {
     expect_refused("{}", ErrorCode::bad_data, "is JSON, but not glTF: asset.version is missing");
     expect_refused(R"({"asset":{"version":"1.0"}})", ErrorCode::unsupported,
                    "its glTF version is 1.0, only 2.x is supported");
+    expect_refused(R"({"asset":{"version":"2.0","minVersion":"2.1"}})", ErrorCode::bad_data,
+                   "requires glTF version 2.1, and is of version 2.0");
+    expect_refused(R"({"asset":{"version":"2.1","minVersion":"2.1"}})", ErrorCode::bad_data, "has no triangles");
     expect_refused(R"({"asset":{"version":"2.0"}})", ErrorCode::bad_data, "has no triangles");
     expect_refused("{\"a\":" + std::string(100000, '['), ErrorCode::bad_data,
-                   "its JSON is nested deeper than 64 levels");
+                   "its JSON is nested deeper than 1024 levels");
+    expect_refused(R"({"asset":{"version":"2.0"},"extensionsRequired":"KHR_texture_transform"})", ErrorCode::bad_data,
+                   "its extensionsRequired is no list");
+    expect_refused(R"({"asset":{"version":"2.0"},"extensionsRequired":[5]})", ErrorCode::bad_data,
+                   "its extensionsRequired holds what is no name");
     expect_refused(R"({"asset":{"version":"2.0"},"extensionsRequired":["ACME_mesh_compression"]})",
                    ErrorCode::unsupported, "requires the extension ACME_mesh_compression, which is not supported");
     const std::string nodes = ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":";

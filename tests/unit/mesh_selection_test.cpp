@@ -64,6 +64,27 @@ TEST(MeshSelection, JoinsThePartsOfAMaterial) {
     EXPECT_EQ(last.w, same.w);
 }
 
+// KHR_materials_variants: a part is chosen by each material that it can have, and is on that one's UVs.
+TEST(MeshSelection, ChoosesPartsByTheMaterialsOfTheirVariants) {
+    Mesh mesh = two_meshes();
+    mesh.materials.push_back({"snow", "snow_n.png", 0});
+    mesh.materials[3].has_normal_map = true;
+    mesh.materials[3].uv_transform.scale_x = 2.0;
+    mesh.parts[1].variants = {0, 3};
+    const auto snow = select_part(mesh, of("snow"));
+    ASSERT_TRUE(snow) << snow.error().reason;
+    EXPECT_EQ(snow->part.triangles(), 18u);
+    EXPECT_TRUE(snow->has_normal_map && snow->has_transform);
+    EXPECT_EQ(snow->pieces.at(0).material, "snow");
+    EXPECT_EQ(snow->part.uvs[0][1].x, 2.0f * mesh.parts[1].uvs[0][1].x);
+    const auto stone = select_part(mesh, of("stone"));
+    ASSERT_TRUE(stone) << stone.error().reason;
+    EXPECT_EQ(stone->part.triangles(), 8u + 18u + 32u);
+    const auto wood = select_part(mesh, of("wood"));
+    ASSERT_TRUE(wood) << wood.error().reason;
+    EXPECT_EQ(wood->part.triangles(), 18u);
+}
+
 TEST(MeshSelection, ChoosesByPrimitiveNodeAndUvSet) {
     Mesh mesh = two_meshes();
     MeshSelection selection;
@@ -192,7 +213,7 @@ TEST(MeshSelection, ExplainsWhatIsMissing) {
     EXPECT_EQ(refusal(mesh, {}), "has 2 materials: \"stone\", \"wood\"");
     EXPECT_EQ(refusal(mesh, of("glass")), "has no material \"glass\"; it has \"stone\", \"wood\", 2");
     EXPECT_EQ(refusal(mesh, of("3")), "has no material \"3\"; it has \"stone\", \"wood\", 2");
-    EXPECT_EQ(refusal(mesh, of("2")), "has no part with this material, primitive and node");
+    EXPECT_EQ(refusal(mesh, of("2")), "has no triangles with the material 2");
     EXPECT_EQ(refusal(mesh, of("stone", "west")),
               "has no node \"west\" with a mesh; it has \"north\", \"south\", \"twin\", \"twin\"");
     EXPECT_EQ(refusal(mesh, of("stone", "twin")), "has several nodes called \"twin\"");

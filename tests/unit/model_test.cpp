@@ -2,6 +2,7 @@
 
 #include <tex/mesh.h>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -176,6 +177,45 @@ TEST_F(Models, ExtensionsOfTexturesAndUsesAreKnown) {
     const auto texture = read_map(*model, model->maps[0]);
     ASSERT_TRUE(texture) << texture.error().message();
     EXPECT_EQ(texture->extent().width, 8);
+}
+
+// Exporters may describe a file or a view once for each of its uses.
+TEST_F(Models, ImagesOfTheSameBytesShareTheirUses) {
+    const std::string view = std::to_string(maker_.add_view(picture({8, 8})));
+    const auto model = read(
+        R"("materials":[{"normalTexture":{"index":0},"emissiveTexture":{"index":1}},{"normalTexture":{"index":2},)"
+        R"("occlusionTexture":{"index":3}},{"normalTexture":{"index":4}}],)"
+        R"("textures":[{"source":0},{"source":1},{"source":2},{"source":3},{"source":4}],"images":[{"bufferView":)" +
+        view + R"(},{"bufferView":)" + view + R"(},{"uri":"a%62.png"},{"uri":"./ab.png"},{"uri":"ba.png"}])");
+    ASSERT_TRUE(model) << model.error().message();
+    for (const std::size_t k : {0U, 1U, 2U, 3U}) EXPECT_EQ(model->images[k].uses.size(), 2u) << k;
+    EXPECT_EQ(model->images[0].uses[0].slot, "emissiveTexture");
+    EXPECT_EQ(model->images[2].uses[1].slot, "occlusionTexture");
+    EXPECT_EQ(model->images[4].uses.size(), 1u);
+    const auto reports = check_model((folder_ / "m.glb").string());
+    ASSERT_TRUE(reports);
+    const auto& findings = reports->front().findings;
+    EXPECT_TRUE(std::any_of(findings.begin(), findings.end(),
+                            [](const Finding& finding) { return finding.rule->id == "N802"; }));
+}
+
+// A FIFO would never end.
+TEST_F(Models, FilesThatAreNoneAreNotOpened) {
+    ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+    const auto model =
+        read(R"("materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"fifo"}])");
+    ASSERT_TRUE(model) << model.error().message();
+    const auto map = read_map(*model, model->maps[0]);
+    ASSERT_FALSE(map);
+    EXPECT_EQ(map.error().code, ErrorCode::io);
+    EXPECT_EQ(map.error().reason, "is not a regular file");
+    GltfMaker maker = maker_;
+    maker.uri = "\"uri\":\"fifo\",";
+    std::ofstream(folder_ / "b.gltf") << maker.json(R"({"attributes":{"POSITION":0}})");
+    const auto mesh = read_mesh((folder_ / "b.gltf").string());
+    ASSERT_FALSE(mesh);
+    EXPECT_EQ(mesh.error().code, ErrorCode::io);
+    EXPECT_EQ(mesh.error().reason, "is not a regular file");
 }
 
 // What is wrong with one image is that image's error; the model is read.

@@ -64,28 +64,14 @@ std::string pair_text(const CheckReport& report) {
                        pair.offset_y);
 }
 
-namespace {
-
-// What is usual: the mean gap halves when the map's side doubles. The limits are round numbers above the largest means
-// of the table in the manual, which a unit test (MeshFit) measures.
-std::string usual_seams(const Extent& extent) {
-    constexpr std::pair<int, int> kUsual[] = {{2048, 5}, {1024, 10}, {512, 21}};
-    for (const auto& [side, degrees] : kUsual) {
-        if (std::max(extent.width, extent.height) < side) continue;
-        return fmt::format("; usual for a map of {} texels that was baked for its mesh and decoder: a mean under {}",
-                           side, degrees);
-    }
-    return {};
-}
-
-}  // namespace
-
 std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
-        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees{}\n",
-        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst, usual_seams(report.extent));
+        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees; usual for a "
+        "map "
+        "of this detail that was baked for its mesh and decoder: a mean under {:.1f}\n",
+        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst, seams.usual);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {
@@ -113,7 +99,8 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
                          {"mean", static_cast<float>(report.seams->mean)},
                          {"p99", static_cast<float>(report.seams->p99)},
                          {"worst", static_cast<float>(report.seams->worst)},
-                         {"worst_edge", region_json(report.seams->worst_edge)}};
+                         {"worst_edge", region_json(report.seams->worst_edge)},
+                         {"usual", static_cast<float>(report.seams->usual)}};
     }
     json["findings"] = Json::array();
     for (const Finding& finding : report.findings) {

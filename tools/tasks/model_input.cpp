@@ -3,6 +3,7 @@
 #include "tasks/model_input.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <tex/mesh.h>
@@ -22,33 +23,42 @@ std::string field_of(const Model& model, const ModelMap& map) {
     return text + (map.slot == NormalSlot::clearcoat_normal ? "_clearcoat" : "");
 }
 
+// Files may have many thousand materials, so that names are counted once.
+using Counts = std::map<std::string, int>;
+
 std::vector<std::string> fields_of(const Model& model) {
+    Counts counts;
     std::vector<std::string> fields;
-    for (const ModelMap& map : model.maps) fields.push_back(field_of(model, map));
+    for (const ModelMap& map : model.maps) {
+        fields.push_back(field_of(model, map));
+        ++counts[fields.back()];
+    }
     std::vector<std::string> unique = fields;
     for (std::size_t k = 0; k < fields.size(); ++k) {
-        if (std::count(fields.begin(), fields.end(), fields[k]) > 1)
-            unique[k] += "_" + std::to_string(model.maps[k].material);
+        if (counts[fields[k]] == 1) continue;
+        do unique[k] += "_" + std::to_string(model.maps[k].material);
+        while (counts.contains(unique[k]));
+        counts[unique[k]] = 1;
     }
     return unique;
 }
 
-// The map's material, as maps_of() finds it.
-std::string material_of(const Model& model, const ModelMap& map) {
-    const auto& materials = model.mesh.materials;
-    const std::string& name = materials[static_cast<std::size_t>(map.material)].name;
-    const auto same = std::count_if(materials.begin(), materials.end(),
-                                    [&](const MeshMaterial& material) { return material.name == name; });
-    return name.empty() || same > 1 ? selection_of(model, map).material : name;
+Counts names_of_materials(const Model& model) {
+    Counts counts;
+    for (const MeshMaterial& material : model.mesh.materials) ++counts[material.name];
+    return counts;
 }
 
-// The files that the map depends on, apart from the model.
-std::vector<std::string> files_beside(const std::string& file, const ModelImage* image,
-                                      const MeshReadOptions& options) {
-    std::vector<std::string> files;
-    if (auto of_mesh = mesh_files(file, options)) files.assign(of_mesh->begin() + 1, of_mesh->end());
-    if (image != nullptr && !image->file.empty()) files.push_back(image->file);
-    return files;
+// The map's material, as maps_of() finds it.
+std::string material_of(const Model& model, const ModelMap& map, const Counts& names) {
+    const std::string& name = model.mesh.materials[static_cast<std::size_t>(map.material)].name;
+    return name.empty() || names.at(name) > 1 ? selection_of(model, map).material : name;
+}
+
+// The files of the geometry, apart from the model.
+std::vector<std::string> buffers_of(const std::string& file, const MeshReadOptions& options) {
+    const auto files = mesh_files(file, options);
+    return files ? std::vector<std::string>(files->begin() + 1, files->end()) : std::vector<std::string>();
 }
 
 const ModelImage* image_of(const Model& model, const ModelMap& map) {
@@ -66,17 +76,19 @@ std::vector<std::shared_ptr<const ModelInput>> maps_in(const std::string& file, 
     const auto chosen = maps_of(*model, material);
     if (!chosen) return one({.file = file, .error = chosen.error()});
     if (chosen->empty()) return one({.file = file});
-    const std::vector<std::string> fields = fields_of(*model);
+    const std::vector<std::string> fields = fields_of(*model), buffers = buffers_of(file, options);
+    const Counts names = names_of_materials(*model);
     std::vector<std::shared_ptr<const ModelInput>> maps;
     for (std::size_t k = 0; k < fields.size(); ++k) {
         const ModelMap& map = model->maps[k];
         if (map.material != chosen->front().material && !material.empty()) continue;
         const ModelImage* const image = image_of(*model, map);
-        ModelInput input{.file = file, .material = material_of(*model, map), .field = fields[k]};
+        ModelInput input{.file = file, .material = material_of(*model, map, names), .field = fields[k]};
         input.map = map;
         if (image != nullptr) input.image = image->file.empty() ? image->name : image->file;
         input.path = image != nullptr && !image->file.empty() ? image->file : input.name();
-        input.beside = files_beside(file, image, options);
+        input.beside = buffers;
+        if (image != nullptr && !image->file.empty()) input.beside.push_back(image->file);
         input.last = last;
         maps.push_back(std::make_shared<const ModelInput>(std::move(input)));
     }

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -65,8 +66,14 @@ struct MeshPart {
     std::vector<std::uint32_t> quads;
     // Red, green and blue as stored: most files have them from 0 to 1. Read if MeshReadOptions::colors asks for them.
     std::vector<Float3> colors;
+    // Other materials that the part can have (glTF's KHR_materials_variants), as indices like `material`. Ascending.
+    std::vector<int> variants;
 
     [[nodiscard]] std::size_t triangles() const { return indices.size() / 3; }
+    // Whether `number` is its material, or one of the others.
+    [[nodiscard]] bool can_have(int number) const {
+        return number == material || std::binary_search(variants.begin(), variants.end(), number);
+    }
 };
 
 // How a material moves UVs before it looks up a texture (glTF's KHR_texture_transform). With c and s the cosine and the
@@ -136,13 +143,13 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 //
 // The first bytes of a file decide how it is read; for Assimp's types, its extension comes first.
 //
-// glTF   Buffers are inside the file (GLB), in data URIs (base64), or in files beside it. Such a file must be named by
-//        a relative path that stays in the folder of the .gltf file or below it: "mesh.bin", "parts/mesh.bin". URIs
-//        with a scheme, absolute paths and ".." are refused, because a mesh from a stranger must not choose what is
-//        read. Read: triangles, strips and fans (points and lines are skipped); indices of 8, 16 and 32 bits; POSITION,
-//        NORMAL, TANGENT and up to kMaxUvSets sets TEXCOORD_n, as floats or as integers (KHR_mesh_quantization); sparse
-//        accessors; matrices, translations, rotations and scales of nodes; instances of nodes
-//        (EXT_mesh_gpu_instancing); buffers compressed by meshoptimizer (EXT_meshopt_compression,
+// glTF   Buffers are inside the file (GLB), in data URIs, or in files beside it. Such a file must be named by a
+//        relative path that stays in the folder of the .gltf file or below it: "mesh.bin", "parts/mesh.bin", and be a
+//        regular file. URIs with a scheme, absolute paths and ".." are refused, because a mesh from a stranger must not
+//        choose what is read. Read: triangles, strips and fans (points and lines are skipped); indices of 8, 16 and 32
+//        bits; POSITION, NORMAL, TANGENT and up to kMaxUvSets sets TEXCOORD_n, as floats or as integers
+//        (KHR_mesh_quantization); sparse accessors; matrices, translations, rotations and scales of nodes; instances of
+//        nodes (EXT_mesh_gpu_instancing); buffers compressed by meshoptimizer (EXT_meshopt_compression,
 //        KHR_meshopt_compression); triangles compressed by Draco (KHR_draco_mesh_compression), which a separate process
 //        decodes, as for other file types. Vertices that no triangle uses are dropped. UVs stay as stored; materials
 //        say how textures move them (KHR_texture_transform). Ignored: skins, morph targets (the base shape is read),
@@ -746,7 +753,7 @@ struct ModelImage {
     std::string file;       // the path of its file, which need not exist; empty: its bytes are in the model
     std::string mime_type;  // as the model states it; may be empty
     std::vector<std::byte> bytes;
-    std::vector<ImageUse> uses;
+    std::vector<ImageUse> uses;  // of this image, and of others of the same file or buffer view
     std::optional<Error> error;  // why it cannot be read, if the model says enough to know that
 };
 
@@ -768,7 +775,8 @@ struct Model {
     std::vector<ModelMap> maps;  // by material, then slot
 };
 
-// Whether a file begins as a glTF model does, as text or as GLB. False if it cannot be read; "-" is not looked at.
+// Whether a file begins as a glTF model does, as text or as GLB, or is called .gltf or .glb and begins as no other type
+// that libtex knows. False if it cannot be read; "-" is not looked at.
 [[nodiscard]] TEX_API bool is_model(const std::string& path);
 
 // Reads a model: its meshes as read_mesh(), and the bytes of those images that are inside it and that a normal slot

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <limits>
 #include <tuple>
+#include <utility>
 
+#include "checks/seam_evidence.h"
 #include "checks/tangent_rules.h"
 #include "mesh/vectors.h"
 
@@ -136,6 +138,18 @@ private:
     int x_, y_, z_;
 };
 
+// The mean angle between the vector at a place and those one texel away, in degrees.
+double change_at(const TexelAt& texel_at, double x, double y, Vector3 here) {
+    constexpr std::pair<double, double> kAround[] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
+    const auto unit = [](Vector3 v) {
+        const double size = std::sqrt(dot(v, v));
+        return size > 0.0 ? 1.0 / size * v : Vector3{0.0, 0.0, 1.0};
+    };
+    double sum = 0.0;
+    for (const auto& [right, down] : kAround) sum += seam_degrees(unit(here) - unit(texel_at(x + right, y + down)));
+    return sum / 4.0;
+}
+
 std::array<double, 3> weights_at(const SeamSide& side, double way) {
     std::array<double, 3> weights{};
     weights[side.corner[0]] = 1.0 - way;
@@ -177,6 +191,7 @@ SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edge
                 place.weights[s] = weights_at(*sides[s], way);
                 const std::array<double, 2> at = {p[0] + way * (q[0] - p[0]), p[1] + way * (q[1] - p[1])};
                 place.texel[s] = texel_at(at[0], at[1]);
+                place.change += change_at(texel_at, at[0], at[1], place.texel[s]) / 2.0;
                 if (s == 0) place.at = at;
             }
             places_.push_back(place);

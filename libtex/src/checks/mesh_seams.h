@@ -54,6 +54,7 @@ public:
         std::array<Vector3, 2> texel;                    // as stored
         std::array<double, 2> at{};                      // of the first side in the map, in texels
         double weight = 0.0;                             // length in object space
+        double change = 0.0;  // the mean angle to the four texels around, of both sides, in degrees
     };
     [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 

@@ -39,7 +39,7 @@ void check_uv_set(const MapInModel& in, Findings& findings) {
     std::size_t without = 0, all = 0;
     std::size_t sets = 0;
     for (const MeshPart& part : in.model.mesh.parts) {
-        if (part.material != in.map.material) continue;
+        if (!part.can_have(in.map.material)) continue;
         all += part.triangles();
         sets = std::max(sets, part.uvs.size());
         if (static_cast<std::size_t>(in.map.uv_set) >= part.uvs.size()) without += part.triangles();

@@ -15,6 +15,10 @@ namespace {
 // The side of a square around the worst edge, in texels.
 constexpr int kRegion = 16;
 
+// What is usual: see SeamEvidence. Of 42 maps of waves on seven meshes, at three sizes, the largest mean is 5.0 times
+// the change, and the smallest one with green the other way, but for one mesh of which few seams turn, is 6.2 times it.
+constexpr double kUsualRounding = 0.6, kUsualChanges = 5.0;
+
 // The square of texels around a place of the map, inside of the map.
 Region region_around(const std::array<double, 2>& place, Extent extent) {
     const auto first = [](double at, int size, int whole) {
@@ -35,12 +39,13 @@ double seam_degrees(Vector3 gap) {
 SeamEvidence seam_evidence(const SeamSamples& samples, const std::vector<Vector3>& gaps, Extent extent) {
     SeamEvidence evidence;
     std::vector<std::pair<double, double>> angles;  // with their weights
-    double all = 0.0, of_edge = 0.0, count = 0.0;
+    double all = 0.0, change = 0.0, of_edge = 0.0, count = 0.0;
     const auto& places = samples.places();
     for (std::size_t k = 0; k < places.size(); ++k) {
         const double angle = seam_degrees(gaps[k]);
         angles.emplace_back(angle, places[k].weight);
         evidence.mean += places[k].weight * angle;
+        change += places[k].weight * places[k].change;
         all += places[k].weight;
         of_edge += angle;
         count += 1.0;
@@ -53,6 +58,7 @@ SeamEvidence seam_evidence(const SeamSamples& samples, const std::vector<Vector3
         of_edge = count = 0.0;
     }
     evidence.mean = all > 0.0 ? evidence.mean / all : 0.0;
+    evidence.usual = kUsualRounding + (all > 0.0 ? kUsualChanges * change / all : 0.0);
     std::sort(angles.begin(), angles.end());
     double below = 0.0;
     for (const auto& [angle, weight] : angles) {

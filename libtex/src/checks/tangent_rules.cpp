@@ -78,6 +78,11 @@ void add(Findings& findings, std::string_view id, std::string message, double fi
     finding.unit = unit;
 }
 
+// A material that mirrors or turns its map moves it away from the tangents, which stay.
+std::string of_moved_uvs(const SelectedPart& selected) {
+    return selected.has_transform ? "; the UVs are those that KHR_texture_transform of the material makes" : "";
+}
+
 void report(const SelectedPart& selected, const TangentCounts& counts, Findings& findings) {
     const std::size_t corners = selected.tangents.size(), triangles = selected.part.triangles();
     const auto share = [](std::size_t count, std::size_t all) {
@@ -99,7 +104,8 @@ void report(const SelectedPart& selected, const TangentCounts& counts, Findings&
         add(findings, "N704", of_all(counts.mixed, triangles, "triangles"), share(counts.mixed, triangles), "share");
     const double opposite = share(counts.opposite, counts.with_orientation);
     if (opposite > thresholds::kOppositeSigns)
-        add(findings, "N706", of_all(counts.opposite, counts.with_orientation, "triangles"), opposite, "share");
+        add(findings, "N706", of_all(counts.opposite, counts.with_orientation, "triangles") + of_moved_uvs(selected),
+            opposite, "share");
 }
 
 // Percentiles of the angles in degrees.
@@ -137,7 +143,7 @@ Result<void> compare_with_methods(const SelectedPart& selected, const Execution&
     };
     std::string message = "they differ by " + text(*mikktspace);
     if (meshopt->p99 < 0.5 * mikktspace->p99) message += "; meshoptimizer's fit better: " + text(*meshopt);
-    add(findings, "N705", std::move(message), mikktspace->p99, "degrees");
+    add(findings, "N705", message + of_moved_uvs(selected), mikktspace->p99, "degrees");
     return {};
 }
 

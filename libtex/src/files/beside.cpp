@@ -2,6 +2,9 @@
 
 #include "files/beside.h"
 
+#include <filesystem>
+#include <system_error>
+
 #include "files/input_file.h"
 
 namespace tex::inline v1 {
@@ -11,12 +14,25 @@ std::string beside(const std::string& path, const std::string& name) {
     return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
 }
 
+Result<void> check_regular(const std::string& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
+    return Error{ErrorCode::io, path, "is not a regular file"};
+}
+
 Result<std::vector<std::byte>> read_at_most(const std::string& path, std::int64_t most) {
     auto file = InputFile::open(path);
     if (!file) return file.error();
     if (file->size() && *file->size() > most)
         return Error{ErrorCode::unsupported, path, "has more than " + std::to_string(most) + " bytes"};
     return file->read_rest(most);
+}
+
+Result<std::vector<std::byte>> read_beside(const std::string& path, const std::string& name, std::int64_t most) {
+    const std::string file = beside(path, name);
+    if (const auto regular = check_regular(file); !regular) return regular.error();
+    return read_at_most(file, most);
 }
 
 }  // namespace tex::inline v1

@@ -22,6 +22,7 @@
 #include "formats/ktx2/ktx2.h"
 #include "formats/lfs/lfs_pointer.h"
 #include "formats/marks.h"
+#include "formats/model/model_file.h"
 #include "formats/png/png.h"
 #include "formats/raw/raw.h"
 #include "formats/reader/reader_rows.h"
@@ -78,6 +79,7 @@ constexpr Codec kCodecs[] = {
      .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
      .compress = compress_ktx2},
     {.magic = kLfsMagic, .open_rows = refuse_lfs_pointer},
+    {.claims = may_be_model, .open_rows = refuse_model},
     {.magic = kKtxMagic, .parse = parse_ktx, .has_layers = true},
     {.container = Container::astc,
      .magic = kAstcMagic,

@@ -3,6 +3,7 @@
 #include "mesh/gltf.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -19,6 +20,9 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr const char* kColors = "COLOR_0";
+
+// glTF forbids it, but some editors write it, and engines read such files.
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
 Error unsupported(std::string reason) { return {ErrorCode::unsupported, {}, std::move(reason)}; }
 
@@ -51,6 +55,7 @@ private:
     Result<void> fill(JsonValue primitive, const std::string& name, const Read& used, std::vector<T>& values);
     Result<void> read_attributes(JsonValue primitive, const Read& used, MeshPart& part);
     Result<void> read_colors(JsonValue primitive, const Read& used, MeshPart& part);
+    Result<void> read_variants(JsonValue primitive, MeshPart& part) const;
 
     std::size_t materials_;
     GltfBuffers& buffers_;
@@ -177,6 +182,20 @@ Result<void> PrimitiveReader::read_colors(JsonValue primitive, const Read& used,
     return fill(primitive, kColors, used, part.colors);
 }
 
+Result<void> PrimitiveReader::read_variants(JsonValue primitive, MeshPart& part) const {
+    const JsonValue mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"];
+    std::vector<int>& variants = part.variants;
+    for (std::size_t k = 0; k < mappings.size(); ++k) {
+        const auto number = mappings[k]["material"].count();
+        if (!number || static_cast<std::size_t>(*number) >= materials_)
+            return bad_gltf("the material of a variant does not exist");
+        if (static_cast<int>(*number) != part.material) variants.push_back(static_cast<int>(*number));
+    }
+    std::sort(variants.begin(), variants.end());
+    variants.erase(std::unique(variants.begin(), variants.end()), variants.end());
+    return {};
+}
+
 Result<void> PrimitiveReader::read_attributes(JsonValue primitive, const Read& used, MeshPart& part) {
     const JsonValue attributes = primitive["attributes"];
     if (const auto done = fill(primitive, "POSITION", used, part.positions); !done) return done.error();
@@ -213,6 +232,7 @@ Result<void> PrimitiveReader::read(JsonValue primitive, MeshPart& part) {
         if (!number || static_cast<std::size_t>(*number) >= materials_) return bad_gltf("its material does not exist");
         part.material = static_cast<int>(*number);
     }
+    if (const auto read = read_variants(primitive, part); !read) return read.error();
     if (corners->empty()) return {};
     const Read used = used_of(*corners, vertices_);
     part.indices = std::move(*corners);
@@ -251,7 +271,8 @@ Result<void> read_primitives(JsonValue root, GltfBuffers& buffers, DracoTriangle
 
 bool is_gltf(std::span<const std::byte> head) {
     const std::string_view text = text_of(head);
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    const std::size_t mark = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    const std::size_t first = text.find_first_not_of(" \t\r\n", mark);
     return text.starts_with("glTF") || (first != std::string_view::npos && text[first] == '{');
 }
 
@@ -278,10 +299,26 @@ Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes) {
     return chunks;
 }
 
+namespace {
+
+// 1 of "2.1".
+int minor_of(std::string_view version) {
+    int minor = 0;
+    std::from_chars(version.data() + 2, version.data() + version.size(), minor);
+    return minor;
+}
+
+}  // namespace
+
 Result<void> check_asset(JsonValue root) {
     const std::optional<std::string> version = root["asset"]["version"].text();
     if (!version) return bad_gltf("is JSON, but not glTF: asset.version is missing");
     if (!version->starts_with("2.")) return unsupported("its glTF version is " + *version + ", only 2.x is supported");
+    // A file of 2.1 may require 2.1, which the validator accepts, too. No 2.x so far changes triangles.
+    const std::string least = root["asset"]["minVersion"].text().value_or("2.0");
+    if (!least.starts_with("2.") || minor_of(least) > minor_of(*version))
+        return bad_gltf("requires glTF version " + least.substr(0, 20) + ", and is of version " +
+                        version->substr(0, 20));
     return check_required_extensions(root);
 }
 
@@ -294,7 +331,7 @@ Result<std::vector<std::string>> gltf_buffer_files(std::span<const std::byte> by
     std::vector<std::string> files;
     for (std::size_t k = 0; k < buffers.size(); ++k) {
         const std::optional<std::string> uri = buffers[k]["uri"].text();
-        if (!uri || uri->starts_with("data:")) continue;
+        if (!uri || is_data_uri(*uri)) continue;
         auto path = path_of_uri(*uri);
         if (!path) return path.error();
         if (std::find(files.begin(), files.end(), *path) == files.end()) files.push_back(std::move(*path));

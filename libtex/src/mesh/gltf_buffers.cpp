@@ -85,6 +85,24 @@ int hex_digit(char c) {
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
 }
 
+// The text with bytes for "%41" (RFC 3986); nullopt if a % is followed by something else.
+std::optional<std::string> unescaped(std::string_view uri) {
+    std::string text;
+    text.reserve(uri.size());
+    for (std::size_t k = 0; k < uri.size(); ++k) {
+        if (uri[k] != '%') {
+            text += uri[k];
+            continue;
+        }
+        const int high = k + 1 < uri.size() ? hex_digit(uri[k + 1]) : -1;
+        const int low = k + 2 < uri.size() ? hex_digit(uri[k + 2]) : -1;
+        if (high < 0 || low < 0) return std::nullopt;
+        text += static_cast<char>(high * 16 + low);
+        k += 2;
+    }
+    return text;
+}
+
 int base64_digit(char c) {
     if (c >= 'A' && c <= 'Z') return c - 'A';
     if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -100,19 +118,11 @@ Result<std::string> path_of_uri(std::string_view uri) {
         return Error{ErrorCode::unsupported, {}, "its buffer \"" + std::string(uri.substr(0, 80)) + "\" " + why};
     };
     if (uri.find(':') != std::string_view::npos) return refused("is not a file beside it");
-    std::string path;
-    for (std::size_t k = 0; k < uri.size(); ++k) {
-        char c = uri[k];
-        if (c == '%') {
-            const int high = k + 1 < uri.size() ? hex_digit(uri[k + 1]) : -1;
-            const int low = k + 2 < uri.size() ? hex_digit(uri[k + 2]) : -1;
-            if (high < 0 || low < 0) return refused("is not a valid URI");
-            c = static_cast<char>(high * 16 + low);
-            k += 2;
-        }
-        if (static_cast<unsigned char>(c) < 0x20 || c == '\\') return refused("is not a valid path");
-        path += c;
-    }
+    const std::optional<std::string> unescaped_path = unescaped(uri);
+    if (!unescaped_path) return refused("is not a valid URI");
+    const std::string& path = *unescaped_path;
+    const auto is_odd = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '\\'; };
+    if (std::any_of(path.begin(), path.end(), is_odd)) return refused("is not a valid path");
     if (path.empty() || path.front() == '/') return refused("is not a relative path");
     std::string plain;  // without "." and "//", so that one file has one name
     for (std::size_t from = 0; from < path.size();) {
@@ -127,11 +137,23 @@ Result<std::string> path_of_uri(std::string_view uri) {
     return plain;
 }
 
+bool is_data_uri(std::string_view uri) {
+    constexpr std::string_view kScheme = "data:";
+    return uri.size() >= kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(), [](char a, char b) {
+               return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
+           });
+}
+
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
     const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-        return bad_gltf("a data URI is not base64");
-    std::string_view digits = uri.substr(comma + 1);
+    if (comma == std::string_view::npos) return bad_gltf("a data URI has no data");
+    const auto text = unescaped(uri.substr(comma + 1));
+    if (!text) return bad_gltf("a data URI is not a valid URI");
+    if (!uri.substr(0, comma).ends_with(";base64")) {
+        const auto* const bytes = reinterpret_cast<const std::byte*>(text->data());
+        return std::vector<std::byte>(bytes, bytes + text->size());
+    }
+    std::string_view digits = *text;
     while (digits.ends_with('=')) digits.remove_suffix(1);
     if (digits.size() % 4 == 1) return bad_gltf("a data URI is truncated");
     std::vector<std::byte> bytes;
@@ -182,7 +204,7 @@ std::uint32_t GltfAccessor::integer(std::size_t element) const {
 
 // Each file is loaded once, however often it is named.
 Result<std::span<const std::byte>> GltfBuffers::load(const std::string& uri) {
-    const bool inside = uri.starts_with("data:");
+    const bool inside = is_data_uri(uri);
     const auto path = inside ? Result<std::string>(uri) : path_of_uri(uri);
     if (!path) return path.error();
     auto found = loaded_.find(*path);

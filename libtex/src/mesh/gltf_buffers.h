@@ -29,7 +29,10 @@ using LoadBeside = std::function<Result<std::vector<std::byte>>(const std::strin
 // The path that a URI names; bad_data or unsupported if it is not one that mesh_io.h accepts.
 Result<std::string> path_of_uri(std::string_view uri);
 
-// The bytes of "data:...;base64,...". Errors: bad_data.
+// Whether the URI has its bytes in itself: "data:...", in any case.
+bool is_data_uri(std::string_view uri);
+
+// The bytes of "data:...;base64,...", or of "data:...,..." (RFC 2397). Errors: bad_data.
 Result<std::vector<std::byte>> decode_data_uri(std::string_view uri);
 
 // Elements of one to four numbers. Views point into the buffers.

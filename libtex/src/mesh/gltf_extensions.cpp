@@ -3,7 +3,10 @@
 #include "mesh/gltf_extensions.h"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
+
+#include "mesh/gltf_buffers.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -70,11 +73,12 @@ public:
 
 Result<void> check_required_extensions(JsonValue root) {
     const JsonValue required = root["extensionsRequired"];
+    if (!required.is_null() && !required.is_array()) return bad_gltf("its extensionsRequired is no list");
     for (std::size_t k = 0; k < required.size(); ++k) {
-        const std::string name = required[k].text().value_or("");
-        if (!is_known(name)) {
-            return Error{ErrorCode::unsupported, {}, "requires the extension " + name + ", which is not supported"};
-        }
+        const std::optional<std::string> name = required[k].text();
+        if (!name) return bad_gltf("its extensionsRequired holds what is no name");
+        if (!is_known(*name))
+            return Error{ErrorCode::unsupported, {}, "requires the extension " + *name + ", which is not supported"};
     }
     return {};
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,7 +44,7 @@ Result<void> locate(JsonValue description, GltfBuffers& buffers, bool reads, Mod
     }
     const std::string uri = description["uri"].text().value_or("");
     if (uri.empty()) return bad_gltf("has neither bytes nor a file");
-    if (!uri.starts_with("data:")) {
+    if (!is_data_uri(uri)) {
         auto path = path_of_uri(uri);
         if (!path)
             return Error{path.error().code, {}, "its file \"" + uri.substr(0, 80) + "\" is not one in its folder"};
@@ -62,6 +63,25 @@ std::string name_of_image(JsonValue description, const ModelImage& image, std::s
     if (!name.empty()) return name;
     if (!image.file.empty()) return image.file.substr(image.file.rfind('/') + 1);
     return "image " + std::to_string(number);
+}
+
+// For each image, the first one with the same bytes: exporters describe an image once for each of its uses. What their
+// files or buffer views have twice is not compared.
+std::vector<std::size_t> first_of_same(JsonValue images) {
+    std::map<std::string, std::size_t> first;
+    std::vector<std::size_t> same;
+    for (std::size_t k = 0; k < images.size(); ++k) {
+        const auto view = images[k]["bufferView"].count();
+        const auto uri = images[k]["uri"].text();
+        std::string key = view ? "view " + std::to_string(*view) : "none " + std::to_string(k);
+        if (!view && uri && is_data_uri(*uri)) key = *uri;
+        if (!view && uri && !is_data_uri(*uri)) {
+            const auto path = path_of_uri(*uri);
+            key = "file " + (path ? *path : *uri);
+        }
+        same.push_back(first.emplace(std::move(key), k).first->second);
+    }
+    return same;
 }
 
 }  // namespace
@@ -103,14 +123,19 @@ std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const 
         images[k].name = name_of_image(list[k], images[k], k);
         images[k].mime_type = list[k]["mimeType"].text().value_or("");
     }
+    const std::vector<std::size_t> same = first_of_same(list);
     for (std::size_t m = 0; m < materials.size(); ++m) {
         const auto slots = slots_of(materials[m]);
         if (!slots) continue;
         for (const GltfSlot& slot : *slots) {
             const int image = image_of(root, slot.texture);
-            if (image >= 0)
-                images[static_cast<std::size_t>(image)].uses.push_back({static_cast<int>(m), slot.name, slot.is_color});
+            if (image < 0) continue;
+            ModelImage& first = images[same[static_cast<std::size_t>(image)]];
+            first.uses.push_back({static_cast<int>(m), slot.name, slot.is_color});
         }
+    }
+    for (std::size_t k = 0; k < images.size(); ++k) {
+        if (same[k] != k) images[k].uses = images[same[k]].uses;
     }
     return images;
 }

@@ -31,9 +31,9 @@ bool take(JsonValue pair, double& x, double& y) {
 // A set of UVs that may be missing.
 bool take(JsonValue value, int& set) {
     if (value.is_null()) return true;
-    const std::optional<std::int64_t> found = value.count();
-    if (!found) return false;
-    set = static_cast<int>(std::min<std::int64_t>(*found, kMaxUvSets));
+    const std::optional<double> found = value.number();
+    if (!found || !(*found >= 0.0) || std::floor(*found) != *found) return false;
+    set = static_cast<int>(std::min(*found, static_cast<double>(kMaxUvSets)));
     return true;
 }
 
@@ -103,7 +103,7 @@ Result<MeshMaterial> material_of(JsonValue root, JsonValue description) {
     const auto image = root["textures"][static_cast<std::size_t>(normal->texture)]["source"].count();
     if (!image) return material;
     const std::string uri = root["images"][static_cast<std::size_t>(*image)]["uri"].text().value_or("");
-    if (!uri.starts_with("data:")) material.normal_map = uri;
+    if (!is_data_uri(uri)) material.normal_map = uri;
     return material;
 }
 
@@ -123,6 +123,7 @@ Result<std::vector<MeshMaterial>> gltf_materials(JsonValue root) {
     const JsonValue list = root["materials"];
     std::vector<MeshMaterial> materials;
     for (std::size_t k = 0; k < list.size(); ++k) {
+        if (!list[k].is_object()) return bad_gltf("material " + std::to_string(k) + " is damaged");
         auto material = material_of(root, list[k]);
         if (!material) return bad_gltf("material " + std::to_string(k) + ": " + material.error().reason);
         materials.push_back(std::move(*material));

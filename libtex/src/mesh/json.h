@@ -20,7 +20,7 @@
 namespace tex::inline v1 {
 
 inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 20;
-inline constexpr int kMaxJsonDepth = 64;
+inline constexpr int kMaxJsonDepth = 1024;
 
 // A value of a document, or null. Valid as long as the document exists.
 class JsonValue {
