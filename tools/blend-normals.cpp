@@ -131,8 +131,11 @@ Result<void> BlendNormals::process(cli::Job& job) {
     if (!blended) return blended.error();
     trust_if_all_agree(*blended);
     normals.note(job, job.task.input, blended->source);
-    for (std::size_t k = 0; k < blended->details.size(); ++k)
-        normals.note(job, with.layers[k].input, blended->details[k]);
+    for (std::size_t k = 0; k < blended->details.size(); ++k) {
+        SourceInfo detail = blended->details[k];
+        detail.others.clear();  // only what the base has beside its normals goes along, or is missed
+        normals.note(job, with.layers[k].input, detail);
+    }
     cli::report_input(job, blended->source);
     cli::wrote_levels(job, job.task.output, blended->levels);
     cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes, blended->rdo);

@@ -66,6 +66,15 @@ std::string choose_swizzle(const std::string& word, std::optional<Swizzle>& to) 
     return {};
 }
 
+// KIND, or KIND,KIND of blue and alpha.
+std::string choose_kinds(const std::string& word, Wanted& wanted) {
+    const std::size_t comma = word.find(',');
+    std::string wrong = choose(word.substr(0, comma), kOtherKindNames, wanted.blue);
+    if (!wrong.empty()) return wrong;
+    wanted.alpha = wanted.blue;
+    return comma == std::string::npos ? "" : choose(word.substr(comma + 1), kOtherKindNames, wanted.alpha);
+}
+
 std::string ignore(const std::string&, Wanted&) { return {}; }
 
 struct Attribute {
@@ -80,6 +89,7 @@ constexpr Attribute kAttributes[] = {
     {"tex:effort", [](const std::string& word, Wanted& w) { return choose(word, kEffortNames, w.pack.effort); }},
     {"tex:metric", [](const std::string& word, Wanted& w) { return choose(word, kMetricNames, w.pack.metric); }},
     {"tex:mips", choose_levels},
+    {"tex:kind", choose_kinds},
     {"tex:swizzle", [](const std::string& word, Wanted& w) { return choose_swizzle(word, w.pixels.swizzle); }},
     {"tex:dds-header",
      [](const std::string& word, Wanted& w) { return choose(word, kDdsHeaderNames, w.write.dds_header); }},
@@ -93,6 +103,7 @@ constexpr Attribute kAttributes[] = {
     {"tex:remarks", ignore},
     {"tex:trailing_bytes", ignore},
     {"tex:unpack", ignore},
+    {"tex:length-in", ignore},
 };
 
 const Attribute* find_attribute(const OIIO::string_view& name) {
@@ -129,19 +140,22 @@ void apply_mark(const ImageSpec& spec, Wanted& wanted) {
 }
 
 // The encoding of these texels; nullopt if pack() makes none such. Files without formats of three channels hold those
-// with a fourth one.
-std::optional<Encoding> encoding_of(const Texture& texture) {
-    for (const bool widened :
-         {true, false}) {  // of the encodings with alpha in 16 bits or floats, nothing else is read
-        for (const Named<Encoding>& row : kEncodingNames) {
-            const EncodingInfo encoding = encoding_info(row.value);
-            const FormatInfo info = format_info(encoding.format);
-            const bool plain = info.channels == 3 && !info.has_blocks();
-            if (widened && (!plain || info.bits == 8)) continue;
-            const auto format = widened ? format_of(info.sample, info.bits, 4) : encoding.format;
-            if (format == texture.format && layout_name(encoding.swizzle) == layout_name(texture.swizzle))
-                return row.value;
-        }
+// with a fourth one, which matters only if there is data in it.
+std::optional<Encoding> encoding_of(const Texture& texture, OtherPlanes others) {
+    const auto holds = [&](Encoding encoding, Format format) {
+        Swizzle swizzle = encoding_info(encoding).swizzle;
+        if (others.blue && can_hold(encoding).blue) swizzle[2] = texture.swizzle[2];
+        return format == texture.format && layout_name(swizzle) == layout_name(texture.swizzle);
+    };
+    for (const Named<Encoding>& row : kEncodingNames) {
+        const Format format = encoding_info(row.value).format;
+        const FormatInfo info = format_info(format);
+        if (others.alpha || info.channels != 3 || info.has_blocks() || info.bits == 8) continue;
+        const std::optional<Format> wider = format_of(info.sample, info.bits, 4);
+        if (wider && holds(row.value, *wider)) return row.value;
+    }
+    for (const Named<Encoding>& row : kEncodingNames) {
+        if (holds(row.value, encoding_info(row.value).format)) return row.value;
     }
     return std::nullopt;
 }
@@ -175,14 +189,22 @@ Result<Wanted> wanted_of(const ImageSpec& spec) {
 Result<Reading> reading_of(const ImageSpec& config) {
     for (const OIIO::ParamValue& value : config.extra_attribs) {
         const std::string name = value.name().string();
-        if (OIIO::Strutil::starts_with(name, "tex:") && name != "tex:unpack" && name != "tex:swizzle")
-            return mistake("there is no attribute " + name + " for reading; there are tex:unpack and tex:swizzle");
+        if (OIIO::Strutil::starts_with(name, "tex:") && name != "tex:unpack" && name != "tex:swizzle" &&
+            name != "tex:length-in") {
+            return mistake("there is no attribute " + name +
+                           " for reading; there are tex:unpack, tex:swizzle and tex:length-in");
+        }
     }
     Reading reading;
     std::string right;
     if (const std::string unpack = word_of(config, "tex:unpack"); !unpack.empty()) {
         right = choose_flag(unpack, reading.unpack);
         if (!right.empty()) return mistake(wrong_word("tex:unpack", unpack, right));
+    }
+    if (const std::string lengths = word_of(config, "tex:length-in"); !lengths.empty()) {
+        if (lengths != "occlusion" && lengths != "ignore")
+            return mistake(wrong_word("tex:length-in", lengths, "one of occlusion, ignore"));
+        reading.has_lengths = lengths == "occlusion";
     }
     const std::string swizzle = word_of(config, "tex:swizzle");
     if (swizzle.empty()) return reading;
@@ -191,11 +213,11 @@ Result<Reading> reading_of(const ImageSpec& config) {
     return reading;
 }
 
-void describe(const Texture& texture, const std::optional<Swizzle>& pixels, ImageSpec& spec) {
+void describe(const Texture& texture, const std::optional<Swizzle>& pixels, OtherPlanes others, ImageSpec& spec) {
     const auto word = [&](const char* name, std::string_view value) { spec.attribute(name, std::string(value)); };
     word("tex:stored", name_of(kFormatNames, texture.format));
     word("tex:layout", layout_name(texture.swizzle));
-    if (const std::optional<Encoding> encoding = encoding_of(texture))
+    if (const std::optional<Encoding> encoding = encoding_of(texture, others))
         word("tex:format", name_of(kEncodingNames, *encoding));
     std::string mark = pixels ? layout_name(*pixels) : "";
     if (texture.y_known && pixels) {

@@ -14,6 +14,7 @@
 
 #include <tex/file.h>
 #include <tex/format.h>
+#include <tex/mip.h>
 #include <tex/pack.h>
 #include <tex/types.h>
 
@@ -21,6 +22,18 @@ namespace tex::oiio {
 
 // The name of the format, of the file (tex.imageio.so) and of all attributes (tex:...).
 inline constexpr const char* kFormatName = "tex";
+
+// The channels of a picture for the data beside its normals, in the order in which the reader returns them.
+struct OtherName {
+    const char* channel;
+    bool OtherPlanes::*has;
+    Plane<float> NormalMap::*plane;
+};
+inline constexpr OtherName kOtherNames[] = {
+    {"A", &OtherPlanes::alpha, &NormalMap::alpha},
+    {"blue", &OtherPlanes::blue, &NormalMap::blue},
+    {"length", &OtherPlanes::length, &NormalMap::length},
+};
 
 // What the attributes of a picture ask for when it is written.
 struct Wanted {
@@ -31,6 +44,7 @@ struct Wanted {
     WriteOptions write;
     bool keep_levels = true;  // the levels that were sent; otherwise they are built from the base level
     int levels = 0;           // that are built, as in MipOptions
+    OtherKind blue = OtherKind::mask, alpha = OtherKind::mask;  // what such levels get
 };
 
 // Reads them. An attribute tex:... that does not exist, and a value that is not one of its words, is an error
@@ -39,13 +53,15 @@ struct Wanted {
 
 // How a file is read, as the configuration given to ImageInput::open() asks.
 struct Reading {
-    bool unpack = true;  // normals as colours; otherwise the channels as they are stored
+    bool unpack = true;        // normals as colours; otherwise the channels as they are stored
+    bool has_lengths = false;  // the lengths of vectors are data
     std::optional<Swizzle> swizzle;
 };
 [[nodiscard]] Result<Reading> reading_of(const OIIO::ImageSpec& config);
 
-// Adds what the file states. `pixels` is the layout of the pixels, if they are those of normals.
-void describe(const Texture& texture, const std::optional<Swizzle>& pixels, OIIO::ImageSpec& spec);
+// Adds what the file states. `pixels` is the layout of the pixels, if they are those of normals, and `others` the data
+// beside them.
+void describe(const Texture& texture, const std::optional<Swizzle>& pixels, OtherPlanes others, OIIO::ImageSpec& spec);
 
 // Calls body(), which returns true or has called errorfmt() of `plugin`. An exception becomes an error, too.
 template <class Plugin, class Body>

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include <tex/file.h>
 #include <tex/format.h>
@@ -54,6 +57,40 @@ Result<void> check_magic(const std::string& path) {
 
 std::size_t bytes_of(const TypeDesc& type, int channels, Extent extent) {
     return type.size() * static_cast<std::size_t>(channels) * static_cast<std::size_t>(extent.texels());
+}
+
+// Puts values beside the pixels: codes of 16 bits, or floats.
+void add_channels(const NormalMap& map, OtherPlanes others, bool as_floats, std::vector<std::byte>& pixels) {
+    std::vector<const Plane<float>*> planes;
+    for (const OtherName& name : kOtherNames) {
+        if (others.*name.has) planes.push_back(&(map.*name.plane));
+    }
+    const std::size_t size = as_floats ? sizeof(float) : sizeof(std::uint16_t);
+    const Extent extent = map.extent();
+    std::vector<std::byte> wider(pixels.size() / 3 * (3 + planes.size()));
+    const std::byte* from = pixels.data();
+    std::byte* to = wider.data();
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i, from += 3 * size) {
+            to = std::copy_n(from, 3 * size, to);
+            for (const Plane<float>* plane : planes) {
+                const float value = plane->empty() ? 1.0f : plane->row(j)[i];  // in all levels but this one, something
+                const auto code = static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 65535.0f));
+                std::memcpy(to, as_floats ? static_cast<const void*>(&value) : &code, size);
+                to += size;
+            }
+        }
+    }
+    pixels = std::move(wider);
+}
+
+bool is_constant(const Plane<float>& plane) {
+    for (int j = 0; j < plane.extent().height; ++j) {
+        const float* const row = plane.row(j);
+        if (std::any_of(row, row + plane.extent().width, [&](float value) { return value != plane.at(0, 0); }))
+            return false;
+    }
+    return true;
 }
 
 // Floats of normals become colours. Programs expect 0 to 1, and clamp what lies outside in most file types.
@@ -127,14 +164,42 @@ Result<void> Input::load(const std::string& name, const ImageSpec& config) {
         what_ = info.has_blocks() ? Pixels::channels : Pixels::stored;
     }
     const Extent extent = texture_.extent();
+    if (normals) {
+        // What cannot be unpacked is described, and fails when its pixels are read.
+        static_cast<void>(find_others(reading->has_lengths));
+    }
     m_spec = ImageSpec(extent.width, extent.height, normals ? 3 : info.channels, type());
     if (m_spec.nchannels == 1) m_spec.channelnames = {"Y"};
+    for (const OtherName& other : kOtherNames) {
+        if (!(others_.*other.has)) continue;
+        if (other.has == &OtherPlanes::alpha) m_spec.alpha_channel = m_spec.nchannels;
+        ++m_spec.nchannels;
+        m_spec.channelnames.emplace_back(other.channel);
+    }
     if (normals) m_spec.attribute("normalEncoding", "unsigned");
     // What is in A is no opacity: nothing may be divided by it.
-    if (m_spec.nchannels == 4) m_spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (m_spec.alpha_channel >= 0) m_spec.attribute("oiio:UnassociatedAlpha", 1);
     std::optional<Swizzle> pixels;
     if (info.channels > 1) pixels = normals ? kSwizzleXyz : texture_.swizzle;
-    describe(texture_, pixels, m_spec);
+    describe(texture_, pixels, others_, m_spec);
+    return {};
+}
+
+// Looks at the base level. Blue that does not vary, or repeats a component, is a part of a layout without z.
+Result<void> Input::find_others(bool has_lengths) {
+    const auto is_free = [this](std::size_t channel) {
+        const Component held = texture_.swizzle[channel];
+        const bool is_part = held == Component::x || held == Component::y || held == Component::z;
+        return static_cast<int>(channel) < format_info(texture_.format).channels && !is_part;
+    };
+    others_ = {is_free(2) && texture_.swizzle[2] != Component::one, is_free(3), has_lengths};
+    if (others_ == OtherPlanes()) return {};
+    const Result<NormalMap> base = unpacked(0);
+    others_ = {};
+    if (!base) return base.error();
+    others_.alpha = !base->alpha.empty();
+    others_.blue = !base->blue.empty() && !is_constant(base->blue);
+    others_.length = !base->length.empty();
     return {};
 }
 
@@ -151,6 +216,7 @@ TypeDesc Input::type() const {
 bool Input::close() {
     texture_ = Texture();
     pixels_ = {};
+    others_ = {};
     level_ = 0;
     made_ = -1;
     return true;
@@ -215,30 +281,45 @@ Result<void> Input::make_channels() {
     return {};
 }
 
-// Unpacks this level and packs it as colours, as unpack-normals does.
-Result<void> Input::make_normals() {
-    const Execution execution{threads(), {}};
+// The normals of a level, and the data beside them.
+Result<NormalMap> Input::unpacked(int level) const {
     // If nothing states how floats are read, the base level decides; it is unpacked, too.
     const bool needs_base = what_ == Pixels::floats && texture_.normal_encoding.empty();
-    const auto first = needs_base ? texture_.levels.begin() : texture_.levels.begin() + level_;
+    const auto first = needs_base ? texture_.levels.begin() : texture_.levels.begin() + level;
     Texture part;
     part.format = texture_.format;
     part.swizzle = texture_.swizzle;
     part.y_axis = texture_.y_axis;
     part.normal_encoding = texture_.normal_encoding;
-    part.levels.assign(first, texture_.levels.begin() + level_ + 1);
-    Result<MipChain> chain = unpack(part, {}, execution);
+    part.levels.assign(first, texture_.levels.begin() + level + 1);
+    UnpackOptions options;
+    options.others = others_;
+    Result<MipChain> chain = unpack(part, options, {threads(), {}});
     if (!chain) return chain.error();
-    part = {};
-    chain->levels.erase(chain->levels.begin(), chain->levels.end() - 1);
+    return std::move(chain->levels.back());
+}
 
+// Unpacks this level and packs it as colours, as unpack-normals does.
+Result<void> Input::make_normals() {
+    Result<NormalMap> map = unpacked(level_);
+    if (!map) return map.error();
+    NormalMap others;
+    for (const OtherName& name : kOtherNames) others.*name.plane = std::exchange((*map).*name.plane, {});
+
+    const bool as_floats = what_ == Pixels::floats;
     PackOptions options;
-    options.encoding = what_ == Pixels::floats ? Encoding::float_ : Encoding::rgb16;
+    options.encoding = as_floats ? Encoding::float_ : Encoding::rgb16;
     options.y_axis = texture_.y_axis;
-    Result<PackedTexture> colours = pack(*chain, options, execution);
+    MipChain chain;
+    chain.levels.push_back(std::move(*map));
+    Result<PackedTexture> colours = pack(chain, options, {threads(), {}});
     if (!colours) return colours.error();
     pixels_ = std::move(colours->levels.front().bytes);
-    if (what_ == Pixels::floats) to_colours(pixels_);
+    if (as_floats) to_colours(pixels_);
+    if (others_ == OtherPlanes()) return {};
+    for (Plane<float> NormalMap::*const plane : {&NormalMap::x, &NormalMap::y, &NormalMap::z})
+        others.*plane = std::move(chain.levels.front().*plane);
+    add_channels(others, others_, as_floats, pixels_);
     return {};
 }
 

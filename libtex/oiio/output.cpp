@@ -5,6 +5,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -35,6 +36,19 @@ Format format_of_pixels(const TypeDesc& type, int channels) {
     return format.value_or(Format::rgba32_float);
 }
 
+// A value of one of these types, as libtex reads it: OpenImageIO multiplies codes by a rounded 1/255.
+float value_of(const TypeDesc& type, const std::byte* from) {
+    float value = 0.0f;
+    if (type.basetype == TypeDesc::UINT8) return static_cast<float>(std::to_integer<int>(*from)) / 255.0f;
+    if (type.basetype == TypeDesc::UINT16) {
+        std::uint16_t code = 0;
+        std::memcpy(&code, from, sizeof code);
+        return static_cast<float>(code) / 65535.0f;
+    }
+    OIIO::convert_types(type, from, TypeDesc::FLOAT, &value, 1);
+    return value;
+}
+
 bool is_signed_integer(const TypeDesc& type) {
     return type.basetype == TypeDesc::INT8 || type.basetype == TypeDesc::INT16 || type.basetype == TypeDesc::INT32 ||
            type.basetype == TypeDesc::INT64;
@@ -58,13 +72,9 @@ bool exceeds_alpha(const Image& image) {
     return false;
 }
 
-bool has_alpha(const ImageSpec& spec) {
-    return spec.alpha_channel == 3 && spec.nchannels == 4 && spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
-}
-
 // Makes colours that were multiplied by their alpha what they were.
 void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
-    ImageSpec plain(spec.width, spec.height, spec.nchannels, spec.format);
+    ImageSpec plain(spec.width, spec.height, 4, spec.format);
     OIIO::ImageBuf buffer(plain, bytes.data());
     OIIO::ImageBufAlgo::unpremult(buffer, buffer);
 }
@@ -77,7 +87,7 @@ Output::~Output() { close(); }
 const char* Output::format_name() const { return kFormatName; }
 
 int Output::supports(OIIO::string_view feature) const {
-    return feature == "tiles" || feature == "mipmap" || feature == "alpha" ? 1 : 0;
+    return feature == "tiles" || feature == "mipmap" || feature == "alpha" || feature == "nchannels" ? 1 : 0;
 }
 
 bool Output::report(const Result<void>& done) {
@@ -106,8 +116,9 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
     if (!container || !(can_hold_blocks(*container) || can_hold(*container, Encoding::astc_4x4)))
         return mistake(name, "the name must end in .dds, .ktx2 or .astc");
     if (spec.deep || spec.depth > 1) return mistake(name, "deep pictures and volumes are no normal maps");
-    if (spec.nchannels < 2 || spec.nchannels > 4)
-        return mistake(name, "a normal map has 2 to 4 channels, not " + std::to_string(spec.nchannels));
+    name_ = name;
+    if (const Result<void> chosen = choose_channels(spec); !chosen) return chosen;
+    const int channels = spec.nchannels - static_cast<int>(others_.size());
     Result<Wanted> wanted = wanted_of(spec);
     if (!wanted) return mistake(name, wanted.error().reason);
     const Encoding encoding = wanted->format.value_or(default_encoding(*container));
@@ -115,6 +126,11 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
         return mistake(name, "a " + std::string(name_of(kContainerNames, *container)) + " file cannot hold " +
                                  std::string(name_of(kEncodingNames, encoding)) +
                                  "; set the attribute tex:format to another encoding");
+    for (const Other& other : others_) {
+        if (!(can_hold(encoding).*other.name->has))
+            return mistake(name, std::string(name_of(kEncodingNames, encoding)) + " has no room for the channel " +
+                                     other.name->channel + "; leave it out, or set tex:format to another encoding");
+    }
     if (!can_hold_levels(*container) && !wanted->keep_levels && wanted->levels != 1)
         return mistake(name, "this file type holds one level; set the attribute tex:mips to 1 or keep");
     const TypeDesc type = spec.format;
@@ -122,15 +138,29 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
     if (is_unsigned_integer(type)) wanted->pixels.range = ValueRange::unsigned_;
 
     pixels_ = {};
-    pixels_.format = format_of_pixels(kept_type(type), spec.nchannels);
-    pixels_.swizzle = spec.nchannels == 2 ? kSwizzleXy : kSwizzleXyz;
+    pixels_.format = format_of_pixels(kept_type(type), channels);
+    pixels_.swizzle = channels == 2 ? kSwizzleXy : kSwizzleXyz;
     pixels_.normal_encoding = spec.get_string_attribute("normalEncoding");
-    name_ = name;
     container_ = *container;
     wanted_ = std::move(*wanted);
     wanted_.pack.encoding = encoding;
     open_ = true;
     return add_level(spec);
+}
+
+// Channels called blue and length hold data beside the normals; the others are those of the normals.
+Result<void> Output::choose_channels(const ImageSpec& spec) {
+    others_.clear();
+    for (std::size_t c = 0; c < spec.channelnames.size(); ++c) {
+        for (const OtherName& name : kOtherNames) {
+            const bool is_named = name.has != &OtherPlanes::alpha && spec.channelnames[c] == name.channel;
+            if (is_named) others_.push_back({c, &name, {}});
+        }
+    }
+    const int channels = spec.nchannels - static_cast<int>(others_.size());
+    if (channels >= 2 && channels <= 4) return {};
+    return mistake(name_, "a normal map has 2 to 4 channels, not " + std::to_string(channels) +
+                              ", besides those called blue and length");
 }
 
 Result<void> Output::add_level(const ImageSpec& spec) {
@@ -155,6 +185,7 @@ Result<void> Output::add_level(const ImageSpec& spec) {
     m_spec.set_format(type);
     m_spec.channelformats.clear();
     pixels_.levels.push_back({extent, std::vector<std::byte>(level_bytes(pixels_.format, extent))});
+    if (!others_.empty()) sent_.assign(m_spec.image_bytes(), std::byte{0});
     const bool tiled = spec.tile_width > 0 && spec.tile_height > 0;
     next_ = 0;
     end_ = !tiled ? spec.height
@@ -180,8 +211,7 @@ bool Output::write_scanline(int y, int z, TypeDesc format, const void* data, OII
     return guarded(*this, [&] {
         if (!next_is(z == m_spec.z ? std::int64_t{y} - m_spec.y : -1)) return false;
         return copy_to_image_buffer(m_spec.x, m_spec.x + m_spec.width, y, y + 1, z, z + 1, format, data, xstride,
-                                    OIIO::AutoStride, OIIO::AutoStride, pixels_.levels.back().bytes.data(),
-                                    TypeDesc::UNKNOWN);
+                                    OIIO::AutoStride, OIIO::AutoStride, sent().data(), TypeDesc::UNKNOWN);
     });
 }
 
@@ -196,15 +226,52 @@ bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, 
         const bool aligned = m_spec.x + column * m_spec.tile_width == x && m_spec.y + row * m_spec.tile_height == y;
         if (!next_is(aligned && column >= 0 && column < across && z == m_spec.z ? row * across + column : -1))
             return false;
-        return copy_tile_to_image_buffer(x, y, z, format, data, xstride, ystride, zstride,
-                                         pixels_.levels.back().bytes.data(), TypeDesc::UNKNOWN);
+        return copy_tile_to_image_buffer(x, y, z, format, data, xstride, ystride, zstride, sent().data(),
+                                         TypeDesc::UNKNOWN);
     });
+}
+
+// Takes the channels of a level apart.
+void Output::split_level() {
+    if (others_.empty()) return;
+    const auto channels = static_cast<std::size_t>(m_spec.nchannels);
+    const std::size_t size = m_spec.format.size();
+    const Extent extent = pixels_.levels.back().extent;
+    std::vector<int> other_of(channels, -1);
+    for (std::size_t k = 0; k < others_.size(); ++k) {
+        other_of[others_[k].channel] = static_cast<int>(k);
+        others_[k].levels.emplace_back(extent);
+    }
+    const std::byte* from = sent_.data();
+    std::byte* to = pixels_.levels.back().bytes.data();
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            for (std::size_t c = 0; c < channels; ++c, from += size) {
+                if (other_of[c] < 0) {
+                    to = std::copy_n(from, size, to);
+                } else {
+                    others_[static_cast<std::size_t>(other_of[c])].levels.back().at(i, j) =
+                        value_of(m_spec.format, from);
+                }
+            }
+        }
+    }
+}
+
+// Whether colours may be multiplied by an alpha after them.
+bool Output::has_alpha() const {
+    const auto is_before = [this](const Other& other) {
+        return static_cast<int>(other.channel) < m_spec.alpha_channel;
+    };
+    const auto before = std::count_if(others_.begin(), others_.end(), is_before);
+    return format_info(pixels_.format).channels == 4 && m_spec.alpha_channel - before == 3 &&
+           m_spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
 
 // Stored channels, as those of DXT5nm that OpenImageIO's own reader of DDS returns, look like a picture with alpha, but
 // what is in A is x, and nothing was multiplied by it.
 Result<bool> Output::is_multiplied_by_alpha() const {
-    if (!has_alpha(m_spec)) return false;
+    if (!has_alpha()) return false;
     const Execution execution{threads(), {}};
     const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
     if (!swizzle) return swizzle.error();
@@ -218,6 +285,7 @@ Result<void> Output::finish_level() {
     if (next_ != end_)
         return mistake(name_, "level " + std::to_string(pixels_.levels.size() - 1) + " has " + std::to_string(next_) +
                                   " of " + std::to_string(end_) + " scanlines or tiles; no file is written");
+    split_level();
     if (pixels_.levels.size() == 1) {
         const Result<bool> is_multiplied = is_multiplied_by_alpha();
         if (!is_multiplied) return is_multiplied.error();
@@ -232,22 +300,31 @@ bool Output::close() {
         if (open_) report(finish());
         open_ = false;
         pixels_ = {};
+        others_.clear();
+        sent_ = {};
         return !std::exchange(failed_, false);  // programs may look at nothing else
     });
 }
 
-Result<MipChain> Output::levels() const {
+Result<MipChain> Output::levels() {
     const Execution execution{threads(), {}};
     UnpackOptions how = wanted_.pixels;
-    if (!how.swizzle && m_spec.nchannels == 4) {
+    if (!how.swizzle && format_info(pixels_.format).channels == 4) {
         const Result<Swizzle> swizzle = guess_swizzle(pixels_, execution);
         if (!swizzle) return swizzle.error();
         how.swizzle = *swizzle;
     }
     Result<MipChain> sent = unpack(pixels_, how, execution);
-    if (!sent || wanted_.keep_levels) return sent;
+    if (!sent) return sent;
+    for (Other& other : others_) {
+        for (std::size_t k = 0; k < sent->levels.size(); ++k)
+            sent->levels[k].*other.name->plane = std::move(other.levels[k]);
+    }
+    if (wanted_.keep_levels) return sent;
     MipOptions options;
     options.levels = wanted_.levels;
+    options.blue = wanted_.blue;
+    options.alpha = wanted_.alpha;
     return build_mip_chain(std::move(sent->levels.front()), options, execution);
 }
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <tex/format.h>
 #include <tex/types.h>
@@ -35,9 +36,13 @@ public:
 private:
     [[nodiscard]] Result<void> begin(const std::string& name, const OIIO::ImageSpec& spec);
     [[nodiscard]] Result<void> add_level(const OIIO::ImageSpec& spec);
+    [[nodiscard]] bool has_alpha() const;
     [[nodiscard]] Result<bool> is_multiplied_by_alpha() const;
     [[nodiscard]] Result<void> finish_level();
-    [[nodiscard]] Result<MipChain> levels() const;
+    [[nodiscard]] Result<void> choose_channels(const OIIO::ImageSpec& spec);
+    [[nodiscard]] std::vector<std::byte>& sent() { return others_.empty() ? pixels_.levels.back().bytes : sent_; }
+    void split_level();
+    [[nodiscard]] Result<MipChain> levels();
     [[nodiscard]] Result<void> finish();
     [[nodiscard]] bool next_is(std::int64_t part);
     bool report(const Result<void>& done);
@@ -47,10 +52,17 @@ private:
     std::string name_;
     Container container_ = Container::dds;
     Wanted wanted_;
-    Texture pixels_;           // as they were sent
-    bool multiplied_ = false;  // by alpha
-    std::int64_t next_ = 0;    // the number of the scanline or tile of this level that comes next
-    std::int64_t end_ = 0;     // the number of them
+    Texture pixels_;  // as they were sent, without channels that have names of their own:
+    struct Other {
+        std::size_t channel;
+        const OtherName* name;
+        std::vector<Plane<float>> levels;
+    };
+    std::vector<Other> others_;
+    std::vector<std::byte> sent_;  // all channels of a level, if there are others
+    bool multiplied_ = false;      // by alpha
+    std::int64_t next_ = 0;        // the number of the scanline or tile of this level that comes next
+    std::int64_t end_ = 0;         // the number of them
 };
 
 }  // namespace tex::oiio

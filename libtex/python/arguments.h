@@ -76,6 +76,7 @@ TEX_PYTHON_WORDS(LightKind);
 TEX_PYTHON_WORDS(Metric);
 TEX_PYTHON_WORDS(MipDomain);
 TEX_PYTHON_WORDS(MipFilter);
+TEX_PYTHON_WORDS(OtherKind);
 TEX_PYTHON_WORDS(RoughnessModel);
 TEX_PYTHON_WORDS(RuleFamily);
 TEX_PYTHON_WORDS(ScaleMode);
@@ -208,6 +209,14 @@ struct Convert<Swizzle> {
     static Swizzle from(py::handle given, std::string_view name);
     static std::string shown(const Swizzle& value) { return shown_text(layout_name(value)); }
     static std::string type() { return "str"; }
+};
+
+// The names of planes: ["alpha"]
+template <>
+struct Convert<OtherPlanes> {
+    static OtherPlanes from(py::handle given, std::string_view name);
+    static std::string shown(OtherPlanes value);
+    static std::string type() { return "Sequence[Literal['blue', 'alpha', 'length']]"; }
 };
 
 // (r, g, b)

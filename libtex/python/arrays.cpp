@@ -155,7 +155,11 @@ py::array array_of(Plane<float> plane) {
     return view_of(kept->view(), capsule_of(kept));
 }
 
-py::array array_of(NormalMap map) {
+namespace {
+
+py::object normal_map_class() { return py::module_::import("tex._normal_map").attr("NormalMap"); }
+
+py::array normals_of(NormalMap map) {
     auto kept = std::make_shared<NormalMap>(std::move(map));
     const auto address = [](Plane<float>& plane) { return reinterpret_cast<std::intptr_t>(plane.row(0)); };
     const std::intptr_t step = address(kept->y) - address(kept->x);
@@ -166,11 +170,23 @@ py::array array_of(NormalMap map) {
         copy_to(joined->x, {kept->x.row(0), kept->x.stride(), 1});
         copy_to(joined->y, {kept->y.row(0), kept->y.stride(), 1});
         copy_to(joined->z, {kept->z.row(0), kept->z.stride(), 1});
-        return array_of(std::move(*joined));
+        return normals_of(std::move(*joined));
     }
     return py::array(py::dtype::of<float>(), {py::ssize_t{extent.height}, py::ssize_t{extent.width}, py::ssize_t{3}},
                      {kept->x.stride() * kFloat, kFloat, static_cast<py::ssize_t>(step)}, kept->x.row(0),
                      capsule_of(kept));
+}
+
+}  // namespace
+
+py::array array_of(NormalMap map) {
+    py::dict others;
+    for (const auto& [name, plane] : kOtherAttributes) {
+        if (!(map.*plane).empty()) others[name] = array_of(std::move(map.*plane));
+    }
+    py::array normals = normals_of(std::move(map));
+    if (others.empty()) return normals;
+    return normal_map_class()(normals, **others);
 }
 
 py::list arrays_of(MipChain chain) {
@@ -226,6 +242,30 @@ Plane<float> plane_from(py::handle from, std::string_view name, bool finite) {
     return plane;
 }
 
+namespace {
+
+// A plane that stays where results keep it: shared if it is libtex's own, else copied.
+Plane<float> kept_plane_from(const py::object& from, const std::string& name, Sharing sharing) {
+    Plane<float> plane = plane_from(from, name);
+    if (!py::isinstance<py::array>(from) || plane.row(0) != py::array(from).data()) return plane;  // it is a copy
+    const Owner owner = sharing == Sharing::reads ? owner_of(py::array(from)) : nullptr;
+    if (owner == nullptr) return plane.clone();
+    return Plane<float>(plane.extent(), plane.stride(), std::shared_ptr<float>(owner, plane.row(0)));
+}
+
+void add_others(py::handle from, std::string_view name, Sharing sharing, NormalMap& map) {
+    if (!py::isinstance<py::array>(from) || !py::isinstance(from, normal_map_class())) return;
+    for (const auto& [attribute, plane] : kOtherAttributes) {
+        const py::object given = from.attr(attribute);
+        if (given.is_none()) continue;
+        const std::string full = fmt::format("{}.{}", name, attribute);
+        map.*plane = kept_plane_from(given, full, sharing);
+        need_equal((map.*plane).extent(), map.extent(), full);
+    }
+}
+
+}  // namespace
+
 NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
     if (std::optional<MipChain> chain = chain_of_source(from, true)) return std::move(chain->levels.front());
     const py::array array = array_from(from, name, true);
@@ -258,6 +298,7 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
     const bool is_base = name.find('[') == std::string_view::npos || name.ends_with("[0]");  // others may be short
     need(!is_base || !looks_like_colours(map), name,
          "values from 0 to 1 look like colours, (n + 1) / 2; unpack() makes normals of them");
+    add_others(from, name, sharing, map);
     return map;
 }
 

@@ -39,11 +39,19 @@ inline constexpr const char* kArrayMethod = "(self, dtype: Any = None, copy: boo
 [[nodiscard]] py::array array_as(const py::object& array, const py::object& dtype, const py::object& copy);
 
 [[nodiscard]] py::array array_of(Plane<float> plane);  // (height, width)
-[[nodiscard]] py::array array_of(NormalMap map);       // (height, width, 3)
+[[nodiscard]] py::array array_of(NormalMap map);       // (height, width, 3); with others beside it, tex.NormalMap
 [[nodiscard]] py::list arrays_of(MipChain chain);      // one array for each level
 
 // An array over a plane that `owner` keeps alive.
 [[nodiscard]] py::array view_of(PlaneView<float> plane, py::handle owner);
+
+// What is beside the normals of a tex.NormalMap: its planes, by the names of its attributes.
+struct OtherAttribute {
+    const char* name;
+    Plane<float> NormalMap::*plane;
+};
+inline constexpr OtherAttribute kOtherAttributes[] = {
+    {"blue", &NormalMap::blue}, {"alpha", &NormalMap::alpha}, {"length", &NormalMap::length}};
 
 // A plane of an array (height, width). If it is shared, `from` must outlive it. `finite`: checked.
 [[nodiscard]] Plane<float> plane_from(py::handle from, std::string_view name, bool finite = true);
@@ -55,7 +63,7 @@ inline constexpr const char* kArrayMethod = "(self, dtype: Any = None, copy: boo
 // Any array. Raises TypeError if there is none, or if values are masked.
 [[nodiscard]] py::array any_array_from(py::handle from, std::string_view name, std::string_view wanted = "an array");
 
-// A map of an array (height, width, 3), or of what chain_of_source() takes.
+// A map of an array (height, width, 3), or of what chain_of_source() takes. A tex.NormalMap has other data beside it.
 enum class Sharing { reads, writes };  // a verb that writes into the map gets a copy
 [[nodiscard]] NormalMap map_from(py::handle from, std::string_view name, Sharing sharing = Sharing::reads);
 

@@ -18,6 +18,7 @@ namespace {
 struct Checking {
     py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
     py::object height = py::none(), mesh = py::none();
+    bool any_length = false;
     Decoder decoder = Decoder::gltf;
 };
 
@@ -30,6 +31,7 @@ void each_field(Checking& o, F& f) {
     f("height", o.height, "ArrayLike | HeightField | None");
     f("mesh", o.mesh, "SelectedPart | None");
     f("decoder", o.decoder);
+    f("any_length", o.any_length);
 }
 
 // The keywords of check_model().
@@ -108,6 +110,7 @@ void read_checks(const Checking& given, Checks& checks) {
     }
     options.enable = rules_from(given.enable, "enable");
     options.disable = rules_from(given.disable, "disable");
+    options.any_length = given.any_length;
     if (!given.severity.is_none()) {
         for (const auto& [rule, word] : dict_from(given.severity, "severity"))
             options.severity.emplace_back(text_from(rule, "severity"), Convert<Severity>::from(word, "severity"));
@@ -269,7 +272,8 @@ void add_checks(Module& module) {
         "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
         "dict "
         "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
-        "select_part(), and `decoder` the engine. Raises BadOptionError if a rule or a requirement "
+        "select_part(), and `decoder` the engine; with `any_length`, no rule judges the lengths of vectors. Raises "
+        "BadOptionError if a rule or a requirement "
         "does not exist.",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
             const py::object what = call["what"];

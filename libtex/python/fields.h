@@ -51,6 +51,9 @@ void each_field(MipOptions& o, F& f) {
     f("wrap", axes(o.wrap_x, o.wrap_y));
     f("max_side", o.max_side);
     f("any_z", o.any_z);
+    f("blue", o.blue);
+    f("alpha", o.alpha);
+    f("roughness", o.roughness);
 }
 
 template <class F>
@@ -93,6 +96,7 @@ void each_field(UnpackOptions& o, F& f) {
     f("snap_flat", o.snap_flat);
     f("keep_length", o.keep_length);
     f("keep_invalid", o.keep_invalid);
+    f("others", o.others);
 }
 
 template <class F>
@@ -162,6 +166,9 @@ void each_field(SourceOptions& o, F& f) {
     f("bc5_swizzle", o.bc5_swizzle);
     f("r_or_a", o.r_or_a);
     f("doubt_y", o.doubt_y);
+    f("inspect", o.inspect);
+    f("drop_others", o.drop_others);
+    f("fill_background", o.fill_background);
     f("measure_y", o.measure_y);
     f("file_y_first", o.file_y_first);
 }

@@ -51,7 +51,9 @@ void add_reading(Module& module) {
     module.verb<SourceOptions, Running>(
         "read_normals", {{"path", kPath}, {"base_only", "bool", "False"}},
         "tuple[list[NDArray[np.float32]], dict[str, Any]]",
-        "(chain, info): a list of arrays, one for each level, with y up, and a dict of the fields of SourceInfo.",
+        "(chain, info): a list of arrays, one for each level, with y up, and a dict of the fields of SourceInfo. "
+        "Levels "
+        "with other data beside the normals are NormalMaps; unpack={'others': ['alpha', 'blue', 'length']} says which.",
         [](Call& call, SourceOptions& options, Running& running) -> py::object {
             const std::string path = path_from(call["path"], "path");
             const bool base_only = call.has("base_only") && Convert<bool>::from(call["base_only"], "base_only");
@@ -126,6 +128,18 @@ py::dict describe(const SourceInfo& info) {
     facts["y_axis"] = word_of(info.y_axis);
     facts["y_known"] = info.y_known;
     facts["y_doubtful"] = info.y_doubtful;
+    facts["object_space"] = info.object_space;
+    facts["z_doubtful"] = info.z_doubtful;
+    facts["background"] = info.background;
+    py::list others;
+    for (const OtherChannel& other : info.others) {
+        py::dict channel;
+        channel["name"] = std::string(1, other.name);
+        channel["least"] = other.least;
+        channel["greatest"] = other.greatest;
+        others.append(channel);
+    }
+    facts["others"] = others;
     facts["srgb"] = info.srgb;
     facts["remarks"] = strs_of(info.remarks);
     return facts;

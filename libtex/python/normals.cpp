@@ -67,12 +67,26 @@ py::object compared(Call& call, Running& running) {
     return result;
 }
 
+// Without the fields about data beside the normals.
+struct RoughnessKeywords : MipOptions {};
+
+template <class F>
+void each_field(RoughnessKeywords& o, F& f) {
+    f("levels", o.levels);
+    f("filter", o.filter);
+    f("domain", o.domain);
+    f("fade", o.fade);
+    f("wrap", axes(o.wrap_x, o.wrap_y));
+    f("max_side", o.max_side);
+    f("any_z", o.any_z);
+}
+
 void add_roughness(Module& module) {
-    module.verb<MipOptions, Running>(
+    module.verb<RoughnessKeywords, Running>(
         "build_roughness_chain",
         {{"base", kMapSource}, {"roughness", "ArrayLike | float"}, {"model", "str", "'toksvig'"}}, kChain,
         "The roughness of every level, arrays (height, width). `roughness` is a map or one number.",
-        [](Call& call, MipOptions& options, Running& running) -> py::object {
+        [](Call& call, RoughnessKeywords& options, Running& running) -> py::object {
             const NormalMap base = map_from(call["base"], "base");
             const Plane<float> roughness = roughness_from(call["roughness"]);
             const auto model =

@@ -45,7 +45,6 @@ py::object encoded(Call& call, PackOptions& options, Running& running) {
 
 py::object unpacked(Call& call, UnpackOptions& options, Running& running) {
     const py::object from = call["source"];
-    options.others = {};  // arrays hold normals alone
     if (py::isinstance<Texture>(from)) {
         const Texture& texture = texture_from(from, "source");
         return arrays_of(running.run([&](const Execution& e) { return unpack(texture, options, e); }));

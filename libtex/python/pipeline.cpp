@@ -51,6 +51,32 @@ std::function<PackOptions(const SourceInfo&)> pack_by(const PackFields& fields, 
     return [=](const SourceInfo& info) { return pack_options(fields, container, info.y_axis, info.y_known); };
 }
 
+constexpr const char* kOthers = "dict[str, ArrayLike | float | str] | None";
+
+// The data of a dict: of each of blue, alpha and length a number, an array (height, width), or the word 'heights'.
+OtherInputs others_from(py::handle given, bool has_heights) {
+    OtherInputs inputs;
+    if (given.is_none()) return inputs;
+    if (!py::isinstance<py::dict>(given)) raise_type("others", "a dict of 'blue', 'alpha' and 'length'", given);
+    for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
+        const std::string place = text_from(key, "others");
+        const std::string name = fmt::format("others['{}']", place);
+        need(place == "blue" || place == "alpha" || place == "length", name, "there are 'blue', 'alpha', 'length'");
+        OtherData& data = (place == "blue" ? inputs.blue : place == "alpha" ? inputs.alpha : inputs.length).emplace();
+        if (py::isinstance<py::str>(value)) {
+            need(has_heights && text_from(value, name) == "heights", name,
+                 has_heights ? "the word is 'heights'" : "must be a number or an array");
+            data.heights = true;
+        } else if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) {
+            data.value = Convert<float>::from(value, name);
+        } else {
+            const auto plane = std::make_shared<Plane<float>>(plane_from(value, name).clone());
+            data.map = [plane]() -> Result<Plane<float>> { return plane->clone(); };
+        }
+    }
+    return inputs;
+}
+
 template <class Report>
 py::dict written(const Report& report) {
     py::dict facts;
@@ -72,6 +98,7 @@ struct BakeFields {
     float bumpiness_x = 1.0f, bumpiness_y = 1.0f;
     BakeFileOptions file;
     PackFields pack;
+    py::object others = py::none();
 };
 
 template <class F>
@@ -84,6 +111,7 @@ void each_field(BakeFields& o, F& f) {
     f("mip", o.file.mip);
     f("pack", o.pack);
     f("write", o.file.write);
+    f("others", o.others, kOthers);
     f("slopes", o.file.slopes);
 }
 
@@ -97,6 +125,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     const Strength strength{fields.bumpiness_x, fields.bumpiness_y};
     options.strength = [strength](Extent) { return strength; };
     options.pack = pack_options(fields.pack, output.container, YAxis::up, true);
+    options.others = others_from(fields.others, true);
     const BakeFileReport report =
         running.run([&](const Execution& e) { return bake_file(input, output.path, output.container, options, e); });
     py::dict facts = written(report);
@@ -118,6 +147,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
 struct RepackFields {
     PackFileOptions file;
     PackFields pack;
+    py::object others = py::none();
 };
 
 template <class F>
@@ -130,6 +160,7 @@ void each_field(RepackFields& o, F& f) {
     f("keep_codes", o.file.keep_codes);
     f("pack", o.pack);
     f("write", o.file.write);
+    f("others", o.others, kOthers);
 }
 
 py::object repacked(Call& call, RepackFields& fields, Running& running) {
@@ -137,6 +168,7 @@ py::object repacked(Call& call, RepackFields& fields, Running& running) {
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
+    options.others = others_from(fields.others, false);
     const PackFileReport report =
         running.run([&](const Execution& e) { return pack_file(input, output.path, output.container, options, e); });
     py::dict facts = written(report);
@@ -149,6 +181,7 @@ py::object repacked(Call& call, RepackFields& fields, Running& running) {
 struct BlendFields {
     BlendFileOptions file;
     PackFields pack;
+    py::object others = py::none();
 };
 
 template <class F>
@@ -158,6 +191,7 @@ void each_field(BlendFields& o, F& f) {
     f("mip", o.file.mip);
     f("pack", o.pack);
     f("write", o.file.write);
+    f("others", o.others, kOthers);
 }
 
 LayerFile layer_from(py::handle given, const std::string& name) {
@@ -185,6 +219,7 @@ py::object blended(Call& call, BlendFields& fields, Running& running) {
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
+    options.others = others_from(fields.others, false);
     const BlendFileReport report =
         running.run([&](const Execution& e) { return blend_file(input, output.path, output.container, options, e); });
     py::dict facts = written(report);
@@ -200,6 +235,9 @@ py::object blended(Call& call, BlendFields& fields, Running& running) {
 constexpr const char* kNotes =
     "The extension of `output` decides the file type, unless `container` does. Structures are dicts with the names of "
     "their fields: mip={'filter': 'kaiser'}. Without pack={'encoding': ...}, the file gets its default_encoding(). "
+    "`others` is a dict of data that go into 'blue', 'alpha' or 'length': an array (height, width), a number from 0 to "
+    "1, "
+    "or, of bake_file(), 'heights'. "
     "Returns a dict of facts about the result. Several outputs, one file for each level, and roughness maps: use "
     "run().";
 

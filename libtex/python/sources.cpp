@@ -70,7 +70,6 @@ std::optional<MipChain> chain_of_source(py::handle from, bool base_only) {
             if (!swizzle) return swizzle.error();
             UnpackOptions options;
             options.swizzle = *swizzle;
-            options.others = {};  // arrays hold normals alone
             return unpack(texture, options, e);
         });
     }

@@ -22,6 +22,7 @@ from tex._errors import IoError as IoError
 from tex._errors import OutOfMemoryError as OutOfMemoryError
 from tex._errors import UnsupportedError as UnsupportedError
 from tex._heights import read_heights as read_heights
+from tex._normal_map import NormalMap as NormalMap
 from tex._run import Ran as Ran
 from tex._run import RunError as RunError
 from tex._run import commands as commands

@@ -147,6 +147,10 @@ TEST_F(Others, ABlendOfAnotherExtentHasThem) {
     run("blend-normals nh.png n.png -o half.png --format rgba8 --extent 256x256");
     ASSERT_EQ(shell(scratch_, "convert h.png -filter box -resize 50% half_h.png").code, 0);
     EXPECT_TRUE(equal("half.png", 3, "half_h.png", 0, 1.01f));
+    // A detail of another extent changes none of it, and one with the name of the base is no base.
+    run("blend-normals nh.png half.png -o whole.png --format rgba8");
+    EXPECT_TRUE(equal("whole.png", 3, "nh.png", 3, 0.0f));
+    EXPECT_EQ(shell(scratch_, "blend-normals nh.png nh.png -o twice.png --format rgba8 --no-sync").err, "");
 }
 
 TEST_F(Others, SixteenBitsStaySixteen) {
@@ -174,22 +178,43 @@ TEST_F(Others, SixteenBitsStaySixteen) {
     run("pack-normals nh.png -o s.exr --format rgba16f");
 }
 
-// ImageMagick takes apart what we have put together, and we what it has: alpha is unassociated.
+// Other programs take apart what we have put together, and we what they have: alpha is unassociated.
 TEST_F(Others, OtherProgramsSeeTheSameAlpha) {
-    for (const std::string type : {"png", "tga", "dds"}) {
+    // Of a file, a picture of its alpha and one of its colours.
+    const struct {
+        const char* name;
+        const char* script;
+    } kPrograms[] = {
+        {"ImageMagick",
+         "convert $F -auto-orient -alpha extract -depth 8 a.png; convert $F -auto-orient -alpha off -depth 8 rgb.png"},
+        {"OpenImageIO",
+         "oiiotool --iconfig oiio:UnassociatedAlpha 1 $F --ch A -d uint8 -o a.png --pop "
+         "--iconfig oiio:UnassociatedAlpha 1 $F --ch R,G,B -d uint8 -o rgb.png"},
+        {"Pillow",
+         "/usr/bin/python3 -c 'import sys; from PIL import Image; i = Image.open(sys.argv[1]); assert i.mode == "
+         "\"RGBA\"; i.getchannel(3).save(\"a.png\"); Image.merge(\"RGB\", i.split()[:3]).save(\"rgb.png\")' $F"},
+    };
+    for (const std::string type : {"png", "tga", "tif", "dds"}) {
         run("pack-normals n.png -o both." + type + " --format rgba8 --alpha h.png");
-        ASSERT_EQ(shell(scratch_, "convert both." + type + " -auto-orient -alpha extract -depth 8 a.png").code, 0);
-        EXPECT_TRUE(equal("a.png", 0, "h.png", 0)) << type;
-        ASSERT_EQ(shell(scratch_, "convert both." + type + " -auto-orient -alpha off -depth 8 rgb.png").code, 0);
-        EXPECT_TRUE(equal("rgb.png", 0, "n.png", 0)) << type << ": colours are not multiplied by alpha";
+        for (const auto& [name, script] : kPrograms) {
+            const std::string what = name + (" and " + type);
+            ASSERT_EQ(shell(scratch_, "F=both." + type + "; " + script).code, 0) << what;
+            EXPECT_TRUE(equal("a.png", 0, "h.png", 0)) << what;
+            EXPECT_TRUE(equal("rgb.png", 0, "n.png", 0)) << what << ": colours are not multiplied by alpha";
+        }
     }
-    const std::string theirs =
-        "convert n.png h.png -alpha off -compose CopyOpacity -composite -depth 8 PNG32:theirs.png;"
-        "convert theirs.png -alpha extract -depth 8 a.png";
-    ASSERT_EQ(shell(scratch_, theirs).code, 0);
-    run("pack-normals theirs.png -o ours.dds --format rgba8");
-    EXPECT_TRUE(equal("ours.dds", 3, "a.png", 0));
-    EXPECT_TRUE(equal("ours.dds", 0, "n.png", 0));
+    ASSERT_EQ(shell(scratch_, "convert h.png -depth 8 h8.png").code, 0);
+    const std::string theirs[] = {
+        "convert n.png h8.png -alpha off -compose CopyOpacity -composite -depth 8 PNG32:theirs.png",
+        "oiiotool n.png h8.png --ch A=Y --chappend --attrib oiio:UnassociatedAlpha 1 -d uint8 -o theirs.png",
+        "/usr/bin/python3 -c 'from PIL import Image; i = Image.open(\"n.png\").convert(\"RGB\"); "
+        "i.putalpha(Image.open(\"h8.png\").convert(\"L\")); i.save(\"theirs.png\")'"};
+    for (const std::string& script : theirs) {
+        ASSERT_EQ(shell(scratch_, script).code, 0) << script;
+        run("pack-normals theirs.png -o ours.dds --format rgba8");
+        EXPECT_TRUE(equal("ours.dds", 3, "h8.png", 0)) << script;
+        EXPECT_TRUE(equal("ours.dds", 0, "n.png", 0)) << script;
+    }
 }
 
 TEST_F(Others, PatternsNameAFileForEachInput) {

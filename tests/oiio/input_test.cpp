@@ -175,8 +175,8 @@ TEST_F(OiioInput, MisspeltAttributesAreErrors) {
         config.attribute(name, "x");
         const auto input = new_input();
         EXPECT_FALSE(input->open(path, spec, config)) << name;
-        EXPECT_EQ(input->geterror(),
-                  path + ": there is no attribute " + name + " for reading; there are tex:unpack and tex:swizzle");
+        EXPECT_EQ(input->geterror(), path + ": there is no attribute " + name +
+                                         " for reading; there are tex:unpack, tex:swizzle and tex:length-in");
     }
 }
 

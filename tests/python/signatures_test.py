@@ -27,7 +27,7 @@ NOT_BOUND = {
     "check_raw": "read_image(path, raw=...) checks its layout",
     "decode_blocks": "decode() decodes levels",
     "find_by_name": "words are the names",
-    "follows_normals": "arrays hold normals alone",
+    "follows_normals": "a question about one word: is it 'roughness' or 'gloss'",
     "is_model": "read_model() says if a file is none",
     "least_response_of": "integrate() takes it by default",
     "map_name": "the field `name` of a map of read_model()",
@@ -35,7 +35,7 @@ NOT_BOUND = {
     "name_of": "words are the names",
     "needs_mesh": "preview() says that there is no mesh",
     "padded_stride": "memory of planes, which arrays keep",
-    "put_others": "arrays hold normals alone",
+    "put_others": "NormalMap(n, alpha=...), and the argument `others` of pack_file()",
     "read_map": "read_texture() and decode_file() read the image of a map of read_model()",
     "read_model_maps": "read_model() reads the same, with the mesh",
     "rebuilds_z": "to_object_space() and preview() ask it",
@@ -102,9 +102,6 @@ def fields(header, structure):
     return found
 
 
-# Fields about data beside the normals: arrays hold normals alone.
-BESIDE = {"blue", "alpha", "roughness"}
-
 STRUCTURES = [
     ("bake", "bake.h", "BakeOptions"),
     ("height_field", "height.h", "HeightOptions"),
@@ -134,8 +131,6 @@ def test_defaults_are_those_of_the_headers(verb, header, structure):
     found = fields(header, structure)
     assert found
     for name, value in found.items():
-        if name in BESIDE:
-            continue
         shown = parameters[re.sub("_[xy]$", "", name) if name not in parameters else name].default
         if "::" in value:
             assert shown == {"automatic": "auto"}.get(word(value), word(value)), name

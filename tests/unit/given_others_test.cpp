@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -189,6 +192,92 @@ TEST_F(GivenOthersTest, HeightsOf16BitsLoseNothing) {
             expect_near(image.planes[3], expected.planes[0], most, std::string(kind.name));
         }
     }
+}
+
+// A picture with four channels, larger than a strip.
+Texture large_picture(Extent extent, const Plane<float>& green, const Plane<float>& blue) {
+    NormalMap map = flat_map(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            map.y.at(i, j) = 2.0f * green.at(i, j) - 1.0f;
+            map.z.at(i, j) = 2.0f * blue.at(i, j) - 1.0f;
+        }
+    }
+    return pack(chain_from(std::move(map)), {Encoding::rgb16, YAxis::up}).value();
+}
+
+// Two channels of one file, read with the rows of the normals: the bytes of planes that are held.
+TEST_F(GivenOthersTest, FilesGiveWhatPlanesGive) {
+    constexpr Extent kLarge{310, 401};
+    Plane<float> green(kLarge), blue(kLarge);
+    for (int j = 0; j < kLarge.height; ++j) {
+        for (int i = 0; i < kLarge.width; ++i) {
+            green.at(i, j) = static_cast<float>((7 * i + 13 * j) % 251) / 250.0f;
+            blue.at(i, j) = static_cast<float>((5 * i + 3 * j) % 241) / 240.0f;
+        }
+    }
+    const Texture normals = pack(chain_from(wavy_map(kLarge)), {Encoding::float_, YAxis::up}).value();
+    input_ = StreamTest::write("large.exr", encode_file(normals, Container::exr).value());
+    encoding_ = Encoding::rgba16;
+    options_.mip = MipOptions();
+    options_.mip->alpha = OtherKind::roughness;
+    for (const Container type : {Container::png, Container::dds, Container::tiff}) {
+        Texture picture = large_picture(kLarge, green, blue);
+        picture.swizzle_known = picture.y_known = false;
+        const std::string file = StreamTest::write("given", encode_file(picture, type).value());
+        const Image stored = read_image(file).value();
+        const auto plane_of = [&](const char* name) {
+            return [&stored, name]() -> Result<Plane<float>> {
+                return stored.planes[static_cast<std::size_t>(stored.find(name))].clone();
+            };
+        };
+        options_.others = {OtherData{1.0f, plane_of("B")}, OtherData{1.0f, plane_of("G")}};
+        ASSERT_TRUE(run(Container::ktx2));
+        const Bytes expected = bytes_of(path("out"));
+        const auto from_file = [&](HeightChannel channel) {
+            OtherData data;
+            data.picture = OtherPicture{file, {}, channel};
+            return data;
+        };
+        options_.others = {from_file(HeightChannel::b), from_file(HeightChannel::g)};
+        for (const int threads : {1, 2}) {
+            std::filesystem::remove(path("out"));
+            const auto done = pack_file(input_, path("out"), Container::ktx2, options_, {threads, {}});
+            ASSERT_TRUE(done) << done.error().message();
+            EXPECT_EQ(bytes_of(path("out")), expected) << name_of(kContainerNames, type);
+        }
+    }
+}
+
+TEST_F(GivenOthersTest, WhatIsWrongWithAFileNamesIt) {
+    const auto refuses = [this](const std::string& file, ErrorCode code, const std::string& words) {
+        OtherData data;
+        data.picture = OtherPicture{file};
+        options_.others = {{}, data};
+        const auto done = run(Container::dds);
+        ASSERT_FALSE(done) << words;
+        EXPECT_EQ(done.error().code, code) << done.error().message();
+        EXPECT_NE(done.error().message().find(words), std::string::npos) << done.error().message();
+        EXPECT_FALSE(std::filesystem::exists(path("out")));
+        NormalMap map = wavy_map(kExtent);
+        const auto put = put_others(map, options_.others, Encoding::rgba8);
+        ASSERT_FALSE(put);
+        EXPECT_EQ(put.error().code, code);
+    };
+    refuses(path("none.png"), ErrorCode::io, "none.png: no such file");
+    RoughnessChain one;
+    one.levels.emplace_back(Extent{5, 4}, 0.5f);
+    const Bytes small = encode_file(pack_roughness(one).value(), Container::png).value();
+    refuses(StreamTest::write("small.png", small), ErrorCode::bad_option,
+            "alpha: the map has 5x4 texels, the normals have 48x32");
+    one.levels[0] = codes(3);
+    Bytes whole = encode_file(pack_roughness(one).value(), Container::png).value();
+    refuses(StreamTest::write("cut.png", Bytes(whole.begin(), whole.end() - 80)), ErrorCode::bad_data, "cut.png: ");
+    Texture unknown = pack_roughness(one, Format::r32_float).value();
+    const float hole = std::numeric_limits<float>::quiet_NaN();
+    std::memcpy(&unknown.levels[0].bytes[100 * sizeof hole], &hole, sizeof hole);
+    const Bytes holes = encode_file(unknown, Container::exr).value();
+    refuses(StreamTest::write("holes.exr", holes), ErrorCode::bad_data, "holes.exr: ");
 }
 
 TEST_F(GivenOthersTest, WhatCannotBeIsRefused) {

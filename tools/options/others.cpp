@@ -160,8 +160,10 @@ std::optional<OtherData> OtherOptions::data(const Choice& choice, Job& job) cons
         case Choice::From::kept: return std::nullopt;
         case Choice::From::heights: data.heights = true; break;
         case Choice::From::number: data.value = choice.number; break;
-        case Choice::From::file:
-            data.map = [&choice, &job] { return read_channel(job, file_for(choice, job.task), {job.threads(), {}}); };
+        case Choice::From::file: {
+            const ChannelFile file = file_for(choice, job.task);
+            data.picture = OtherPicture{file.file, job.read_options, file.channel};
+        }
     }
     return data;
 }

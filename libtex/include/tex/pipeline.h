@@ -57,13 +57,22 @@ struct TerrainTile {
     std::optional<bool> shared_border;
 };
 
+// One channel of a picture, from 0 to 1, as read_image() and height_field() read it, with FileValues::unit and without
+// a no-data value. Files read its rows with those of the normals, and do not hold it.
+struct OtherPicture {
+    std::string file;
+    ReadOptions read = {};
+    HeightChannel channel = HeightChannel::automatic;
+};
+
 // Data that go into B, A or the lengths of the vectors, beside the normals of the base level (NormalMap::blue, alpha
 // and length). MipOptions says what smaller levels get.
 struct OtherData {
     float value = 1.0f;  // the same everywhere, from 0 to 1,
     std::function<Result<Plane<float>>()> map =
-        {};                // or, if set, what this returns: a map of the extent of the base level,
-    bool heights = false;  // or, if set, the heights that are baked; only for bake_file()
+        {};                                    // or, if set, what this returns: a map of the extent of the base level,
+    bool heights = false;                      // or, if set, the heights that are baked; only for bake_file(),
+    std::optional<OtherPicture> picture = {};  // or, if set, this picture, which has the extent of the base level
 };
 struct OtherInputs {
     std::optional<OtherData> blue = {}, alpha = {}, length = {};

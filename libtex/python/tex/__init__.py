@@ -21,6 +21,9 @@ copied, nor are heights whose rows are contiguous and a multiple of 16 texels lo
 Where a verb takes heights or a map, it takes a path, an Image or (of a map) a Texture, too: tex.pack("rock_n.png").
 numpy.asarray(image) joins the channels of an Image, and Image(array, names) makes one. All objects can be pickled.
 
+A texture may hold more than normals: heights in alpha, occlusion in blue. Then a map is a NormalMap, which is an array
+with these data beside it (n.alpha), and the data go along through verbs. tex.NormalMap(n, alpha=heights) puts them there.
+
 Options are given by name and are the fields of the headers' structures. What has a value for x and one for y is a value
 for both, or a pair: wrap="repeat", wrap=("repeat", "clamp"). Choices are the words of the commands.
 
@@ -44,6 +47,7 @@ from tex._errors import (
 )
 from tex import _tex
 from tex._heights import read_heights
+from tex._normal_map import NormalMap
 from tex._run import Ran, RunError, commands, run
 
 _verbs = {name: value for name, value in vars(_tex).items() if not name.startswith("_")}
@@ -51,7 +55,7 @@ globals().update(_verbs)
 
 __version__ = _tex.version()
 __all__ = sorted(
-    [*_verbs, "BadDataError", "BadOptionError", "CancelledError", "Error", "IoError", "OutOfMemoryError", "Ran"]
-    + ["RunError", "UnsupportedError", "commands", "read_heights", "run"]
+    [*_verbs, "BadDataError", "BadOptionError", "CancelledError", "Error", "IoError", "NormalMap", "OutOfMemoryError"]
+    + ["Ran", "RunError", "UnsupportedError", "commands", "read_heights", "run"]
 )
 del _verbs

@@ -16,6 +16,7 @@ namespace {
 constexpr int kAlpha = 3;
 constexpr double kMostLean = 0.25;     // of x or y in the mean: more is no normal map, whatever blue holds
 constexpr double kBelow = 0.0005;      // share of texels whose z is below 0
+constexpr double kZFollows = 0.5;      // correlation of z with rebuilt z: z of JPEGs of low quality has more
 constexpr double kMostBeyond = 0.005;  // share of texels with x^2 + y^2 above 1: likewise
 
 const char* letter(int channel) { return channel == 0 ? "R" : channel == 1 ? "G" : "B"; }
@@ -90,10 +91,12 @@ Result<void> check_stored_z(const Subject& subject, Findings& findings) {
     ZEvidence evidence;
     for (int j = 0; j < stored.extent().height; j += z_step(stored.extent().height))
         evidence.add_row(x.row(j), y.row(j), z.row(j), !stored.is_signed, stored.extent().width);
-    if (!evidence.is_something_else() || evidence.beyond() > kMostBeyond) return {};
-    // z of uneven vectors is never below 0.
-    const auto is_sure =
-        counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(subject);
+    if (evidence.beyond() > kMostBeyond) return {};
+    Result<bool> is_sure = evidence.is_surely_something_else();
+    if (!*is_sure && evidence.is_something_else() && evidence.correlation() < kZFollows) {
+        // z of uneven vectors is never below 0.
+        is_sure = counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(subject);
+    }
     if (!is_sure) return is_sure.error();
     if (*is_sure) {
         findings.add("N219",

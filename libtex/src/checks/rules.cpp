@@ -149,8 +149,12 @@ constexpr Rule kRules[] = {
      "pack-normals FILE --keep-length --drop --format SAME -o FIXED", "N212"},
     {"N219", "blue-other-data", values, warning, true, "Blue holds other data than z.",
      "It varies, and does not follow x and y as the z of unit vectors does: occlusion, roughness or heights, as in "
-     "LabPBR. It falls below 0, or with a rebuilt z the slopes have less curl. Readers that do not rebuild z get bent "
-     "normals. Floats are not judged.",
+     "LabPBR. One texel in ten or more has less than 0.45 of a unit vector's length; or vectors are longer and shorter "
+     "at "
+     "random; or z falls below 0, or with a rebuilt z the slopes have less curl. Nearly flat maps whose blue stays "
+     "light "
+     "look like vectors of uneven length (N201). Readers that do not rebuild z get bent normals. Floats are not "
+     "judged.",
      "Read the map with --swizzle rg, which rebuilds z; unpack-normals --swizzle rg --blue-out writes the data to a "
      "separate file.",
      "N201 N202 N205 N213 N214 N305 N308 N309 N310 N402 N403 N404"},

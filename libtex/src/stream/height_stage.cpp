@@ -87,8 +87,9 @@ private:
 
 class HeightStage final : public TakeStage {
 public:
-    HeightStage(Flow& flow, const Stage& picture, Heights& heights, const AcrossBlur& blur)
-        : TakeStage(picture.extent(), 0, heights, blur), flow_(flow), picture_(picture), heights_(heights) {}
+    HeightStage(Flow& flow, const Stage& picture, Heights& heights, const std::string& input, const AcrossBlur& blur)
+        : TakeStage(picture.extent(), 0, heights, blur), flow_(flow), picture_(picture), heights_(heights),
+          input_(input) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&picture_, first, end}}; }
     [[nodiscard]] bool counts() const override { return true; }
@@ -108,7 +109,8 @@ public:
     }
     [[nodiscard]] Result<void> check() const override {
         if (first_row_ < 0) return {};
-        return invalid_heights(heights_.counts.invalid, first_column_, first_row_, extent(), heights_.options);
+        return invalid_heights(heights_.counts.invalid, first_column_, first_row_, extent(), heights_.options)
+            .of(input_);
     }
 
 private:
@@ -124,6 +126,7 @@ private:
     Flow& flow_;
     const Stage& picture_;
     Heights& heights_;
+    const std::string& input_;
     std::mutex mutex_;  // guards heights_.counts and the next two
     int first_row_ = -1, first_column_ = 0;
 };
@@ -267,16 +270,29 @@ int height_reach(const HeightOptions& options, const Gradient& gradient) {
     return gradient.radius + std::max(0, static_cast<int>(weights_of(options).size()) - 1);
 }
 
+namespace {
+
+const Stage& add_picture(Flow& flow, Heights& heights, const std::string& input) {
+    ConvertRows convert;
+    if (heights.linear) convert = [&heights](Image& rows, int count) { return heights.linear->convert(rows, count); };
+    return add_source(flow, *heights.rows, input, std::move(convert));
+}
+
+}  // namespace
+
+const Stage& add_heights(Flow& flow, Heights& heights, const std::string& input) {
+    const Stage* const picture = &add_picture(flow, heights, input);
+    return flow.add<HeightStage>(flow, *picture, heights, input, AcrossBlur());
+}
+
 BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const BakeFileOptions& options,
                    const Gradient& gradient) {
     const Extent extent = heights.rows->extent();
-    ConvertRows convert;
-    if (heights.linear) convert = [&heights](Image& rows, int count) { return heights.linear->convert(rows, count); };
     // A pointer: GCC 14 takes a reference for one to the temporary argument.
-    const Stage* const picture = &add_source(flow, *heights.rows, input, std::move(convert));
+    const Stage* const picture = &add_picture(flow, heights, input);
     const WorkingVector<float> weights = weights_of(heights.options);
     const AcrossBlur blur{weights, heights.options.wrap_x};
-    HeightInput rows{&flow.add<HeightStage>(flow, *picture, heights, blur), nullptr, heights.options.wrap_y};
+    HeightInput rows{&flow.add<HeightStage>(flow, *picture, heights, input, blur), nullptr, heights.options.wrap_y};
     if (heights.last) {
         const int begin = std::max(0, extent.height - height_reach(heights.options, gradient));
         rows.last = &flow.add<LastHeightStage>(flow, extent, begin, heights, blur);

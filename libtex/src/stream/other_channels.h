@@ -31,7 +31,7 @@ public:
 
     // To be called after all rows.
     [[nodiscard]] std::vector<OtherChannel> found() const;
-    [[nodiscard]] bool z_is_something_else() const { return z_.is_something_else(); }
+    [[nodiscard]] bool z_is_something_else() const { return z_.is_something_else() || z_.is_surely_something_else(); }
 
 private:
     struct Seen {
