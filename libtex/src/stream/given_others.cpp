@@ -104,7 +104,7 @@ Result<Plane<float>> plane_of(const OtherPicture& picture) {
     const BakeFileOptions options = heights_of(picture);
     Result<Image> image = read_image(picture.file, options.read);
     if (!image) return image.error();
-    Result<HeightField> values = height_field(*image, options.heights);
+    Result<PictureHeights> values = height_field(*image, options.heights);
     if (!values) return values.error().of(picture.file);
     return std::move(values->height);
 }
