@@ -9,7 +9,7 @@ trap 'rm -rf "$scratch"' EXIT
 
 "$1" "$scratch"
 for made in crate_low crate_high; do cmp "$scratch/$made.glb" "$samples/$made.glb"; done
-"$2" "$samples/crate_low.glb" "$samples/crate_high.glb" -o "$scratch/crate_n.png" --size 512 --rays straight \
+"$2" "$samples/crate_low.glb" "$samples/crate_high.glb" -o "$scratch/crate_n.png" --extent 512 --rays straight \
     --max-missed 0
 "$3" "$scratch/crate_n.png" --mesh "$samples/crate_low.glb" --report "$scratch/crate.html"
 [ -s "$scratch/crate.html" ]

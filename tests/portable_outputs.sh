@@ -44,6 +44,6 @@ maps="maps/bricks.png maps/dunes.png maps/hemisphere.png maps/waves.png"
 made from-tif pack-normals tif/*.tif --container dds    # through the reader process
 made from-jpg unpack-normals jpg/*.jpg --container png
 made from-dds unpack-normals bake-dxt5nm/*.dds --container png
-"$bin/transfer-normals" crate_low.glb --high crate_high.glb --size 128 -o crate.png --quiet
+"$bin/transfer-normals" crate_low.glb --high crate_high.glb --extent 128 -o crate.png --quiet
 "$bin/preview-normals" maps/waves.png -o preview.png --size 96 --quiet
 find . -mindepth 2 -type f -o -name crate.png -o -name preview.png | LC_ALL=C sort | xargs sha256sum

@@ -85,10 +85,10 @@ void BlendNormals::add_blend() {
     command.number(blend_.base_scale, "--base-scale", "S", {-kMaxScale, kMaxScale}, "make the base steeper or flatter");
     command.choice(blend_.scale_mode, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     command
-        .option("--extent", "WxH", "the size of the result in texels",
+        .option("--extent", "N|WxH", "the width and height of the result in texels",
                 [this](const std::string& text) {
-                    const auto [width, height] = cli::cut(text, 'x');
-                    blend_.extent = {cli::parse_int(width, 1, kMaxExtent), cli::parse_int(height, 1, kMaxExtent)};
+                    const auto [width, height] = cli::parse_pair_of_sides(text, kMaxExtent);
+                    blend_.extent = {width, height};
                 })
         .preset = "the base's";
 }

@@ -81,7 +81,7 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
-    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.dds --size 4096",
+    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.dds --extent 4096",
                     "The high mesh's normals as a DXT5nm texture with all its levels.");
     command.example(
         "transfer-normals crate_low.fbx crate_high.obj -o crate_n.png --rays straight --subsamples 4 "

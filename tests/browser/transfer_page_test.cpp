@@ -53,7 +53,7 @@ protected:
 
 TEST_F(TransferPage, DrawsTheSameMeshTwiceInTheSameWay) {
     // Of a mesh from itself, the map is flat: both pictures are that of the mesh alone.
-    open_report("crate_low.glb crate_low.glb --size 256");
+    open_report("crate_low.glb crate_low.glb --extent 256");
     EXPECT_LT(differing(canvas_of(".stage.mesh"), canvas_of(".stage.beside")), 0.002);
     point_at(0.3, 0.6);
     point_at(0.7, 0.4, true);
@@ -63,7 +63,7 @@ TEST_F(TransferPage, DrawsTheSameMeshTwiceInTheSameWay) {
 }
 
 TEST_F(TransferPage, TurnsBothMeshesByEither) {
-    open_report("crate_low.glb crate_high.glb --size 512 --rays straight");
+    open_report("crate_low.glb crate_high.glb --extent 512 --rays straight");
     leave_picture("transfer-crate");
     const auto low = canvas_of(".stage.mesh"), high = canvas_of(".stage.beside");
     EXPECT_LT(differing(low, high), 0.15) << "they look alike";
@@ -85,7 +85,7 @@ TEST_F(TransferPage, TurnsBothMeshesByEither) {
 }
 
 TEST_F(TransferPage, ShowsMissedTexelsInRed) {
-    open_report("crate_low.glb crate_high.glb --size 256 --front 1% --back 1%");
+    open_report("crate_low.glb crate_high.glb --extent 256 --front 1% --back 1%");
     leave_picture("transfer-missed");
     const auto red = canvas_of(".stage.mesh");
     set_control("missed", "");

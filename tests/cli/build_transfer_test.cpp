@@ -23,7 +23,7 @@ protected:
     }
     void write_manifest(const std::string& match, const std::string& options) const {
         scratch_.write("normals.toml", "version = 1\n[[rule]]\nmatch = \"" + match +
-                                           "\"\nname = \"out/{stem:-_low}_n.png\"\nsteps = [ { transfer = { size = "
+                                           "\"\nname = \"out/{stem:-_low}_n.png\"\nsteps = [ { transfer = { extent = "
                                            "\"64\", " +
                                            options + " } } ]\n");
     }
@@ -38,7 +38,7 @@ TEST_F(BuildTransfer, MakesWhatTheCommandMakes) {
     ASSERT_EQ(build({"--depfile", "d"}).code, 0);
     EXPECT_EQ(done_.at("meshes/crate_low.glb"), "made");
     ASSERT_EQ(run(scratch_, "transfer-normals",
-                  {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "hand.png", "--size", "64", "--no-sync"})
+                  {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "hand.png", "--extent", "64", "--no-sync"})
                   .code,
               0);
     EXPECT_EQ(scratch_.read("out/crate_n.png"), scratch_.read("hand.png"));
@@ -108,7 +108,7 @@ protected:
                     const std::string& match = "meshes/crate_low.glb") const {
         scratch_.write("normals.toml", "version = 1\n[defaults]\nout-dir = \"out\"\n[[rule]]\nmatch = \"" + match +
                                            "\"\nname = \"" + name +
-                                           "\"\nsteps = [ { transfer = { size = \"64\", high = \"" + high + "\", " +
+                                           "\"\nsteps = [ { transfer = { extent = \"64\", high = \"" + high + "\", " +
                                            more + " } } ]\n");
     }
     void write_sheets() const {
@@ -125,7 +125,7 @@ TEST_F(BuildTransferMaps, WritesThemAsTheCommandDoes) {
     write_rule("height-out = \"h/{stem:-_low}.exr\", occlusion-out = \"{stem:-_low}_ao.png\", rays-per-hit = 4");
     ASSERT_EQ(build({"--depfile", "d"}).code, 0);
     ASSERT_EQ(run(scratch_, "transfer-normals",
-                  {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "n.png", "--size", "64", "--no-sync",
+                  {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "n.png", "--extent", "64", "--no-sync",
                    "--height-out", "h.exr", "--occlusion-out", "ao.png", "--rays-per-hit", "4"})
                   .code,
               0);
@@ -171,7 +171,7 @@ TEST_F(BuildTransferMaps, AreOfTheFirstOfSeveralOutputs) {
     scratch_.write(
         "normals.toml",
         "version = 1\n[[rule]]\nmatch = \"meshes/crate_low.glb\"\nout-dir = \"out\"\nsteps = [ { transfer = { "
-        "size = \"64\", high = \"{dir}/{stem:-_low}_high.glb\", height-out = \"h.exr\" } } ]\n"
+        "extent = \"64\", high = \"{dir}/{stem:-_low}_high.glb\", height-out = \"h.exr\" } } ]\n"
         "outputs = [ { name = \"a.png\" }, { name = \"b.dds\", y = \"down\" } ]\n");
     const Ran ran = build();
     ASSERT_EQ(ran.code, 0) << ran.err;
@@ -183,7 +183,7 @@ TEST_F(BuildTransferMaps, OtherRulesMayReadThem) {
                    "version = 1\n[defaults]\nout-dir = \"out\"\n"
                    "[[rule]]\nmatch = \"meshes/wall.png\"\nname = \"wall_n.png\"\nsteps = [ { bake = {} }, { blend = { "
                    "detail = \"out/obj.png\" } } ]\n"
-                   "[[rule]]\nmatch = \"meshes/crate_low.glb\"\nname = \"n.png\"\nsteps = [ { transfer = { size = "
+                   "[[rule]]\nmatch = \"meshes/crate_low.glb\"\nname = \"n.png\"\nsteps = [ { transfer = { extent = "
                    "\"64\", high = \"meshes/crate_high.glb\", bent-out = \"obj.png\", rays-per-hit = 1 } } ]\n");
     scratch_.add_sample("ramp.png", "meshes/wall.png");
     const Ran ran = build({"-j", "2"});
@@ -225,7 +225,7 @@ TEST_F(BuildTransferMaps, FollowTheTilesOfTheMesh) {
         EXPECT_TRUE(scratch_.has(name)) << name;
     EXPECT_EQ(outputs().size(), 4u);
     ASSERT_EQ(run(scratch_, "transfer-normals",
-                  {"meshes/set_low.obj", "meshes/set_high.obj", "-o", "n.<UDIM>.png", "--size", "64", "--no-sync",
+                  {"meshes/set_low.obj", "meshes/set_high.obj", "-o", "n.<UDIM>.png", "--extent", "64", "--no-sync",
                    "--front", "3", "--back", "3", "--quiet"})
                   .code,
               0);

@@ -88,7 +88,7 @@ const ReportLine kReports[] = {
     {"preview-normals", {"n.png", "-o", "v.png"}},
     {"integrate-normals", {"n.png", "-o", "h.png", "--curl-out", "c.png"}},
     {"convert-normals", {"n.png", "-o", "o.png", "--mesh", "sheet.obj", "--decoder-in", "godot"}},
-    {"transfer-normals", {"low.glb", "-o", "t.png", "--high", "high.glb", "--size", "16"}},
+    {"transfer-normals", {"low.glb", "-o", "t.png", "--high", "high.glb", "--extent", "16"}},
     {"build-normals", {}},
 };
 

@@ -70,6 +70,26 @@ TEST_F(MeasuredY, EachMapOfABlendShowsItsOwn) {
     }
 }
 
+TEST_F(MeasuredY, DetailsAloneCanBeMeasured) {
+    for (const std::string detail : {"down.png", "down.dds"}) {
+        make("blend-normals", {"up.png", "-o", "a.exr", "--detail", detail, "--detail-y-in", "down", "--y-in", "up"});
+        const std::string told = scratch_.read("a.exr");
+        make("blend-normals", {"up.png", "-o", "a.exr", "--detail", detail, "--detail-y-in", "measured"});
+        EXPECT_TRUE(scratch_.read("a.exr") == told) << detail;
+        make("preview-normals", {"up.png", "-o", "a.png", "--size", "64", "--detail", detail, "--detail-y-in", "down"});
+        const std::string picture = scratch_.read("a.png");
+        make("preview-normals",
+             {"up.png", "-o", "a.png", "--size", "64", "--detail", detail, "--detail-y-in", "measured"});
+        EXPECT_TRUE(scratch_.read("a.png") == picture) << detail;
+    }
+    make("blend-normals",
+         {"up.png", "down.dds", "--out-dir", "shared", "--detail", "down.png", "--detail-y-in", "down"});
+    const std::string told = scratch_.read("shared/up.dds");
+    make("blend-normals",
+         {"up.png", "down.dds", "--out-dir", "shared", "--detail", "down.png", "--detail-y-in", "measured"});
+    EXPECT_TRUE(scratch_.read("shared/up.dds") == told);
+}
+
 TEST_F(MeasuredY, OutputsStateIt) {
     make("pack-normals", {"down.png", "-o", "a.ktx2", "--y-in", "measured"});
     make("pack-normals", {"down.png", "-o", "b.ktx2", "--y-in", "down"});
@@ -92,8 +112,10 @@ TEST_F(MeasuredY, MapsThatDoNotShowItAreErrorsThatNameThem) {
     for (const char* command : {"pack-normals", "preview-normals"}) {
         const Ran ran = run(scratch_, command, {"flat.png", "-o", "out.png", "--y-in", "measured", "--quiet"});
         EXPECT_EQ(ran.code, 4);
-        EXPECT_EQ(ran.err, std::string(command) +
-                               ": error: flat.png: which way green points does not show clearly in the texels\n");
+        EXPECT_EQ(ran.err,
+                  std::string(command) +
+                      ": error: flat.png: which way green points does not show clearly in the texels; say up or "
+                      "down instead of measured\n");
         EXPECT_FALSE(scratch_.has("out.png"));
     }
     const Ran blend = run(scratch_, "blend-normals",

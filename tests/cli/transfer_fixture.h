@@ -24,7 +24,7 @@ protected:
     }
 
     Ran go(std::vector<std::string> arguments) const {
-        arguments.insert(arguments.end(), {"--size", "96", "--no-sync"});
+        arguments.insert(arguments.end(), {"--extent", "96", "--no-sync"});
         return run(scratch_, "transfer-normals", arguments);
     }
     Ran does(const std::vector<std::string>& arguments) const {

@@ -24,7 +24,7 @@ TEST_F(TransferNormals, MakesEveryFileThatPackNormalsMakes) {
     does({"crate_low.glb", "crate_high.glb", "-o", "ue.png", "--for", "unreal"});
     EXPECT_EQ(read_texture(scratch_.path("ue.png"))->y_axis, YAxis::down);
     const Ran piped = run(scratch_, "transfer-normals",
-                          {"crate_low.glb", "crate_high.glb", "-o", "-", "--container", "png", "--size", "96"});
+                          {"crate_low.glb", "crate_high.glb", "-o", "-", "--container", "png", "--extent", "96"});
     EXPECT_EQ(piped.out, scratch_.read("n.png"));
 }
 
@@ -205,7 +205,7 @@ TEST_F(TransferNormals, OutputsThatCannotBeWrittenAreAnError) {
     const auto before = scratch_.list();
     const Ran full = shell(scratch_,
                            "ulimit -f 1; transfer-normals crate_low.glb crate_high.glb -o old.png --quiet "
-                           "--height-out old.exr --no-sync --size 256");
+                           "--height-out old.exr --no-sync --extent 256");
     EXPECT_EQ(full.code, 3) << full.err;
     EXPECT_EQ(lines_of(full.err).size(), 1u) << full.err;
     EXPECT_EQ(scratch_.read("old.png"), "old");

@@ -113,7 +113,7 @@ def test_names():
 def test_the_command_makes_the_same_maps(tmp_path):
     out = tmp_path / "n.exr"
     done = subprocess.run([BINARY / "transfer-normals", SAMPLES / "crate_low.glb", SAMPLES / "crate_high.glb", "-o", out,
-                           "--size", "64", "--format", "float", "--mips", "none", "--occlusion-out", tmp_path / "ao.exr",
+                           "--extent", "64", "--format", "float", "--mips", "none", "--occlusion-out", tmp_path / "ao.exr",
                            "--rays-per-hit", "8", "--json"], check=True, capture_output=True)
     report = json.loads(done.stdout)
     space = tex.select_part(tex.read_mesh(SAMPLES / "crate_low.glb"), in_scene=True)

@@ -154,7 +154,21 @@ TEST(MeshFit, ReadsZAsTheDecoderDoes) {
     ASSERT_TRUE(right.seams && same.seams);
     EXPECT_EQ(message_of(same), "");
     EXPECT_NEAR(same.seams->mean, right.seams->mean, 0.2);
-    EXPECT_GT(fit_of(texture, selected, Decoder::unity_builtin).seams->mean, 5.0 * right.seams->mean);
+    const Fit other = fit_of(texture, selected, Decoder::unity_builtin);
+    EXPECT_GT(other.seams->mean, 5.0 * right.seams->mean);
+    EXPECT_TRUE(says(other, "the decoder is one of godot (")) << message_of(other);
+}
+
+// Short vectors keep their direction for engines that take the z that is there, but not for Godot.
+TEST(MeshFit, NamesNoDecoderThatRebuildsZIfTheMapNeedsItsOwn) {
+    const SelectedPart selected = selected_cube();
+    const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
+    Texture texture = baked(surface, {selected.part, selected.tangents, 0, Decoder::substance_vertex});
+    for (std::byte& byte : texture.levels[0].bytes)
+        byte = static_cast<std::byte>(std::lround(127.5 + 0.6 * (std::to_integer<int>(byte) - 127.5)));
+    EXPECT_EQ(message_of(fit_of(texture, selected, Decoder::substance_vertex)), "");
+    const Fit fragment = fit_of(texture, selected, Decoder::gltf);
+    EXPECT_TRUE(says(fragment, "the decoder is one of unity-builtin, substance-vertex (")) << message_of(fragment);
 }
 
 // The background is judged by what the mesh shows of it.

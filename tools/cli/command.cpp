@@ -24,6 +24,7 @@ constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
     {"--strength", "--bumpiness"}, {"--intensity", "--bumpiness"}, {"--flip-y", "--y"},
     {"--flip-green", "--y"},       {"--invert-y", "--y"},          {"--invert-green", "--y"},
     {"--strength", "--scale"},     {"--flip-y", "--y-in"},         {"--invert-green", "--y-in"},
+    {"--size", "--extent"},        {"--resolution", "--extent"},
 };
 
 template <class Rows>

@@ -72,6 +72,12 @@ int parse_int(std::string_view text, int least, int greatest) {
     return value;
 }
 
+std::pair<int, int> parse_pair_of_sides(std::string_view text, int most) {
+    const std::size_t by = text.find('x');
+    const int width = parse_int(text.substr(0, by), 1, most);
+    return {width, by == std::string_view::npos ? width : parse_int(text.substr(by + 1), 1, most)};
+}
+
 std::int64_t parse_count(std::string_view text) {
     ask(AskedNumber::Kind::count, {1.0});
     std::string_view digits = text;

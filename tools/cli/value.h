@@ -27,6 +27,9 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), f
 [[nodiscard]] double parse_double(std::string_view text, Range range = {});
 [[nodiscard]] int parse_int(std::string_view text, int least, int greatest);
 
+// "N" or "WxH", from 1 to `most`: a width and a height in texels.
+[[nodiscard]] std::pair<int, int> parse_pair_of_sides(std::string_view text, int most);
+
 // A count of bytes or texels, at least 1, with an optional suffix K, M, G or T (powers of 1024, either case).
 [[nodiscard]] std::int64_t parse_count(std::string_view text);
 [[nodiscard]] std::string count_text(std::int64_t count);  // "4G": the shortest form

@@ -52,11 +52,8 @@ void LayerOptions::add(Command& command) {
                     strength_.values.push_back(parse_float(text, {0.0, 1.0}));
                 })
         .repeatable = true;
-    Row& y =
-        command.option("--detail-y-in", "AXIS", "which way green points in the detail",
-                       [this](const std::string& text) { y_in_.values.emplace_back(parse_word(text, kYAxisNames)); });
-    y.words = words_of(kYAxisNames);
-    y.completes = Completes::words;
+    Row& y = add_y_in(command, "--detail-y-in", "which way green points in the detail",
+                      [this](YIn given) { y_in_.values.emplace_back(given); });
     y.preset = "as the file says, else as --y-in";
     y.repeatable = true;
 }

@@ -55,7 +55,7 @@ private:
     PerLayer<Pair> tiling_, offset_;
     PerLayer<ChannelFile> mask_;
     PerLayer<std::pair<Wrap, Wrap>> wrap_;
-    PerLayer<std::optional<YAxis>> y_in_;
+    PerLayer<std::optional<YIn>> y_in_;
 };
 
 }  // namespace tex::cli

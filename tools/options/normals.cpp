@@ -85,20 +85,25 @@ void add_length_in(Command& command, std::optional<LengthIn>& length_in) {
         .preset = "nothing: they are 1";
 }
 
-void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_others) {
-    keeps_others_ = keeps_others;
-    command.group("Input");
-    Row& y = command.option("--y-in", "AXIS", "which way green points in the input", [this](const std::string& text) {
+Row& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set) {
+    Row& y = command.option(name, "AXIS", std::move(help), [set = std::move(set)](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kYAxisNames));
         names.emplace_back(kMeasured);
-        const std::string word = known_word(text, names);
-        measures_y = word == kMeasured;
-        unpack.y_axis = find_by_name(kYAxisNames, word);
+        set({find_by_name(kYAxisNames, known_word(text, names))});
     });
     y.words = words_of(kYAxisNames);
     y.words.push_back({kMeasured, "as the texels show; an error if they do not show it clearly"});
-    y.preset = "as the file says, else up";
     y.completes = Completes::words;
+    return y;
+}
+
+void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_others) {
+    keeps_others_ = keeps_others;
+    command.group("Input");
+    add_y_in(command, "--y-in", "which way green points in the input", [this](YIn y) {
+        measures_y = !y.axis;
+        unpack.y_axis = y.axis;
+    }).preset = "as the file says, else up";
     Row& row = command.option("--swizzle", "S", "which channels hold what", [this](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kSwizzleNames));
         names.insert(names.end(), {"auto", "rgorag"});
@@ -137,8 +142,8 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.read = job.read_options;
     options.unpack = unpack;
     options.unpack.swizzle = swizzle;
-    if (reading.y) options.unpack.y_axis = reading.y;
-    options.measure_y = measures_y && !reading.y;
+    if (reading.y) options.unpack.y_axis = reading.y->axis;
+    options.measure_y = reading.y ? !reading.y->axis : measures_y;
     options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
     if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;

@@ -42,11 +42,19 @@ inline constexpr Named<LengthIn> kLengthInNames[] = {
 // --length-in.
 void add_length_in(Command& command, std::optional<LengthIn>& length_in);
 
+// What --y-in and --detail-y-in say: a direction of green, or that the texels show it.
+struct YIn {
+    std::optional<YAxis> axis;  // none: measured
+};
+
+// An option whose value becomes a YIn, which `set` gets.
+Row& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set);
+
 // How one file is read, if this differs from the options.
 struct Reading {
-    bool base_only = false;       // without the smaller levels
-    bool is_detail = false;       // the file's own y overrides --y-in, which is the base's
-    std::optional<YAxis> y = {};  // overrides all of that
+    bool base_only = false;     // without the smaller levels
+    bool is_detail = false;     // the file's own y overrides --y-in, which is the base's
+    std::optional<YIn> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
     bool doubt_y = false;                    // warn if y is assumed and the texels clearly show the other direction
     bool object = false;                     // the vectors are in object space

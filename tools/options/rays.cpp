@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,13 +49,9 @@ double enough(double reach, double diagonal) { return std::max(1.001 * reach, 1e
 void RayOptions::add(Command& command) {
     command.group("Rays");
     command
-        .option("--size", "N[xM]", "the width and height of the map in texels",
+        .option("--extent", "N|WxH", "the width and height of the map in texels",
                 [this](const std::string& text) {
-                    const auto [width, height] = cut(text, 'x');
-                    extent_.width = parse_int(width, 1, kMaxExtent / kMaxSubsamples);
-                    extent_.height = text.find('x') == std::string::npos
-                                         ? extent_.width
-                                         : parse_int(height, 1, kMaxExtent / kMaxSubsamples);
+                    std::tie(extent_.width, extent_.height) = parse_pair_of_sides(text, kMaxExtent / kMaxSubsamples);
                 })
         .preset = fmt::format("{}", extent_.width);
     command

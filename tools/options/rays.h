@@ -20,7 +20,7 @@
 
 namespace tex::cli {
 
-// --size, --subsamples, --rays, --front, --back, --hit, --backfaces, --straight-angle, --straight-width,
+// --extent, --subsamples, --rays, --front, --back, --hit, --backfaces, --straight-angle, --straight-width,
 // --rays-per-hit, --occlusion-distance, --padding, --overlap, --max-missed.
 class RayOptions {
 public:

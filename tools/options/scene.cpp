@@ -161,7 +161,7 @@ void SceneOptions::add_detail(Command& command) {
     add_pair(command, fine.tiling_x, fine.tiling_y, "--detail-tiling", "how often it repeats across the map");
     add_pair(command, fine.offset_x, fine.offset_y, "--detail-offset", "its offset in its own widths");
     command.number(fine.scale, "--detail-scale", "S", {}, "its strength");
-    command.choice(detail_y_in, "--detail-y-in", "AXIS", kYAxisNames, "which way green points in it").preset =
+    add_y_in(command, "--detail-y-in", "which way green points in it", [this](YIn y) { detail_y_in = y; }).preset =
         "as the file says, else as --y-in";
     check_needs(command, "--detail", {"--detail-scale", "--detail-y-in"});
     command.check([&command] {

@@ -61,7 +61,7 @@ struct SceneOptions {
     PreviewOptions preview;
     std::string albedo, detail, detail_albedo, height;  // paths, or empty
     Deband deband = Deband::off;                        // of the heights of `height`
-    std::optional<YAxis> detail_y_in;
+    std::optional<YIn> detail_y_in;
     bool parallax_of_map = false;  // as high as the normals show, instead of preview.parallax.amount
 
     void add(Command& command);

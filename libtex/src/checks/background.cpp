@@ -17,6 +17,8 @@ constexpr double kTogether = 0.5;  // of the texels: the share whose left and up
 constexpr float kShortest = 0.5f, kLongest = 1.25f;  // of what may be a normal that was filtered or compressed
 constexpr float kOutside = 1.3f;                     // the same for x and y, if z is not stored
 constexpr int kMixReach = 2;                         // of filters across the border, in texels
+constexpr int kRingReach = 8;                        // of JPEG's blocks, whose errors stay inside them
+constexpr float kAlike = 0.3f;                       // what JPEG of low quality makes of the value there
 
 // A grid of bins over the cube of stored values from -1 to 1. Black, grey and white lie in the middle of a bin.
 constexpr int kGridBins = 65;
@@ -112,9 +114,17 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
         return background
             .mask[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)];
     };
-    const auto is_near = [&](int i, int j) {
-        for (int y = std::max(0, j - reach); y <= std::min(extent.height - 1, j + reach); ++y) {
-            for (int x = std::max(0, i - reach); x <= std::min(extent.width - 1, i + reach); ++x) {
+    // Of grey: what is left of it has no direction. Other values may be damage of the whole map.
+    const auto [bx, by, bz] = background.value;
+    const bool is_short = bx * bx + by * by + bz * bz < kShortest * kShortest;
+    const auto is_like = [&](const StoredVector& v) {
+        if (!is_short) return false;
+        const auto near = [](float a, float b) { return std::abs(a - b) <= kAlike; };
+        return near(v.x, background.value[0]) && near(v.y, background.value[1]) && near(v.z, background.value[2]);
+    };
+    const auto is_near = [&](int i, int j, int within) {
+        for (int y = std::max(0, j - within); y <= std::min(extent.height - 1, j + within); ++y) {
+            for (int x = std::max(0, i - within); x <= std::min(extent.width - 1, i + within); ++x) {
                 if (at(x, y) == 1) return true;
             }
         }
@@ -124,7 +134,9 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     const auto find = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) {
             for (int i = 0; i < extent.width; ++i) {
-                if (at(i, j) == 0 && map.is_off(map.at(i, j)) && is_near(i, j))
+                if (at(i, j) != 0) continue;
+                const StoredVector v = map.at(i, j);
+                if (map.is_off(v) && (is_near(i, j, reach) || (is_like(v) && is_near(i, j, kRingReach))))
                     mixed[static_cast<std::size_t>(j)].push_back(i);
             }
         }

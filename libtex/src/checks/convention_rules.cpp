@@ -124,6 +124,9 @@ void check_mixed(const Subject& subject, Findings& findings) {
 std::string undecided_by(const Curl& curl) {
     if (curl.usable < kLeastUsable)
         return "only " + percent(curl.usable) + " of them hold a usable normal, of at least " + percent(kLeastUsable);
+    const CurlSums& sums = curl.scale[curl.best_scale];
+    if (!sums.changes_across() && sums.px_square * sums.qy_square > 0.0)
+        return "the slopes change along the axes alone, as those of lines and bevels do";
     if (std::abs(curl.correlation) < kLeastCorrelation)
         return "the correlation is below " + decimal(kLeastCorrelation, 1);
     return "the confidence is below " + decimal(kLeastConfidence, 2);

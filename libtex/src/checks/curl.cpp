@@ -161,8 +161,15 @@ void CurlSums::add(const CurlSums& other) {
     qy_square += other.qy_square;
 }
 
-double CurlSums::correlation() const { return ratio(cross, p_square, q_square); }
-double CurlSums::exchanged_correlation() const { return ratio(exchanged, px_square, qy_square); }
+bool CurlSums::changes_across() const {
+    return p_square * q_square > kLeastAcross * kLeastAcross * px_square * qy_square;
+}
+
+double CurlSums::correlation() const { return changes_across() ? ratio(cross, p_square, q_square) : 0.0; }
+double CurlSums::exchanged_correlation() const {
+    const bool changes_along = px_square * qy_square > kLeastAcross * kLeastAcross * p_square * q_square;
+    return changes_along ? ratio(exchanged, px_square, qy_square) : 0.0;
+}
 
 double diagonal_share(const Stored& stored) {
     constexpr int kSide = 16;  // texels of a region: so small that a structure has one direction in it

@@ -22,6 +22,11 @@ inline constexpr double kLeastCorrelation = 0.2;  // smaller ones prove nothing
 inline constexpr double kLeastConfidence = 0.99;
 inline constexpr double kLeastUsable = 0.5;  // the share of texels that must hold a normal to prove anything
 
+// The least energy of changes across (of p upwards, of q to the right), relative to those along. Lines, bevels and
+// waves along the axes have none; rounding and block codecs then make up to 0.0083, and it has a sign, because they
+// round z or x and y together. Maps of structures along the axes that show their direction have 0.036 and more.
+inline constexpr double kLeastAcross = 0.017;
+
 // Sums over texels. All results are ratios of these sums.
 struct CurlSums {
     double cross = 0.0;      // sum of dp/dy dq/dx, with y up as the file defines up
@@ -31,7 +36,9 @@ struct CurlSums {
     double px_square = 0.0, qy_square = 0.0;
 
     void add(const CurlSums& other);
-    // Correlations in [-1, 1]; 0 if nothing varies. +1: green is up, -1: green is down.
+    // Whether the slopes change across enough for correlation().
+    [[nodiscard]] bool changes_across() const;
+    // Correlations in [-1, 1]; 0 if nothing varies, or if changes_across() is false. +1: green is up, -1: it is down.
     [[nodiscard]] double correlation() const;
     [[nodiscard]] double exchanged_correlation() const;
 };

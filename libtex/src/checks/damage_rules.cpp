@@ -28,6 +28,7 @@ constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
 constexpr int kLatticeTeeth = 6;
+constexpr double kLatticeUneven = 0.25;
 constexpr double kAboveAlphaShare = 0.002;
 constexpr double kAlphaCorrelation = 0.9;
 constexpr double kHalfAlphaShare = 0.01;
@@ -224,6 +225,7 @@ void check_blocks(const Subject& subject, const Traces& traces, Findings& findin
 
 void check_banding(const Lattice& lattice, Findings& findings) {
     if (lattice.strength < thresholds::kLatticeStrength || lattice.teeth < kLatticeTeeth) return;
+    if (lattice.uneven < kLatticeUneven) return;
     Finding& finding = findings.add("N305", "slopes are multiples of " + decimal(lattice.step, 4) + " (strength " +
                                                 decimal(std::min(1.0, lattice.strength), 2) + ")");
     finding.figure = lattice.step;

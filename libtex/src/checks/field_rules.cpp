@@ -15,16 +15,19 @@ namespace {
 // Of the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
 // direction have cos(2 a) / (1 + 2 sin(a)^2) left: 0.76 after 15 degrees.
 constexpr double kSoundCorrelation = 0.9;
-constexpr double kMostBehind = 0.05;  // share of texels that face away: more is object space
-constexpr double kLeastRms = 0.03;    // of changes over two texels: rounding to 8 bits gives 0.0045
-constexpr double kMostShared = 0.5;   // see TurnScale::shared()
-constexpr double kMostTurned = 75.0;  // a quarter turn is the same as exchanged channels: N308
+constexpr double kMostBehind = 0.05;   // share of texels that face away: more is object space
+constexpr double kLeastRms = 0.03;     // of changes over two texels: rounding to 8 bits gives 0.0045
+constexpr double kMostShared = 0.5;    // see TurnScale::shared()
+constexpr double kLeastOther = 0.015;  // of the energy of p in that of q or the other way: less is what a codec mixed
+constexpr double kMostTurned = 75.0;   // a quarter turn is the same as exchanged channels: N308
 
 // The scale with the clearest axis, among those that show more than rounding.
 const TurnScale* clearest_scale(const Turn& turn) {
     const TurnScale* best = nullptr;
     for (const TurnScale& scale : turn.scale) {
         if (scale.rms() < kLeastRms || scale.shared() > kMostShared) continue;
+        const auto [less, more] = std::minmax(scale.p_square, scale.q_square);
+        if (less < kLeastOther * more) continue;  // all slopes lie along one axis
         if (best == nullptr || scale.clearest().strength() > best->clearest().strength()) best = &scale;
     }
     return best;

@@ -137,6 +137,21 @@ double share_at(const Stored& stored, int offset, int pitch, double least) {
     return all >= least ? fits / all : 0.0;
 }
 
+// Whether all rows of the map are equal, or all of its columns. A wave along one axis has four colours at even
+// distances, as a palette has.
+bool is_along_one_axis(const Image& image) {
+    bool rows = true, columns = true;
+    for (const Plane<float>& plane : image.planes) {
+        const auto [width, height] = plane.extent();
+        for (int j = 0; j < height && (rows || columns); ++j) {
+            const float* const row = plane.row(j);
+            rows = rows && std::equal(row, row + width, plane.row(0));
+            columns = columns && std::all_of(row, row + width, [row](float value) { return value == row[0]; });
+        }
+    }
+    return rows || columns;
+}
+
 }  // namespace
 
 double grid_excess(const Stored& stored, int block) {
@@ -174,6 +189,7 @@ double grid_ratio(const Stored& stored, int block) {
 }
 
 double palette_share(const Stored& stored) {
+    if (is_along_one_axis(*stored.image)) return 0.0;
     // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
     return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 #include "checks/median.h"
@@ -27,14 +30,34 @@ constexpr int kCoarsest = 60;
 constexpr int kBins = 16;    // of a histogram, per unit
 constexpr int kRange = 512;  // larger magnitudes are rare
 constexpr std::size_t kAllBins = std::size_t{kRange} * kBins;
-constexpr int kLeastBlocks = 64;      // fewer fit a quantiser by chance
-constexpr int kBlocks = 8192;         // this many are enough
-constexpr double kLeastCount = 12.0;  // coefficients that are not rounded to 0
+constexpr std::size_t kLeastBlocks = 64;  // fewer fit a quantiser by chance
+constexpr int kBlocks = 8192;             // this many are enough
+constexpr double kLeastCount = 12.0;      // coefficients that are not rounded to 0
 constexpr std::size_t kLeastCoefficients = 3;
 constexpr double kAsStrong = 0.1;  // every multiple of 2q is also one of q: take the largest strong step
 constexpr double kStrong = 0.6;
 
 using Histogram = std::vector<double>;
+
+// Whether this block differs from all before it. Structures that repeat have few different blocks, and few blocks fit a
+// quantiser by chance.
+class DistinctBlocks {
+public:
+    bool add(const Image& image, int x, int y) {
+        std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a of 64 bits, a value at a time
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int j = 0; j < 8; ++j) {
+                const float* const row = image.planes[c].row(y + j) + x;
+                for (int i = 0; i < 8; ++i) hash = (hash ^ std::bit_cast<std::uint32_t>(row[i])) * 0x100000001b3u;
+            }
+        }
+        return hashes_.insert(hash).second;
+    }
+    [[nodiscard]] std::size_t count() const { return hashes_.size(); }
+
+private:
+    std::unordered_set<std::uint64_t> hashes_;
+};
 
 // The index of coefficient (u, v) in [v][u].
 std::size_t place_of(int u, int v) { return static_cast<std::size_t>(v) * kSide + static_cast<std::size_t>(u); }
@@ -130,18 +153,21 @@ JpegTrace measure_jpeg(const Stored& stored, int offset) {
     const std::vector<Rect> windows = sample_windows(stored.extent());
     std::int64_t blocks = 0;
     for (const Rect& window : windows) blocks += std::int64_t{window.width / 8} * (window.height / 8);
-    if (blocks < kLeastBlocks) return {};
+    if (blocks < static_cast<std::int64_t>(kLeastBlocks)) return {};
     const auto stride = static_cast<int>(std::max<std::int64_t>(1, blocks / kBlocks));
     std::array<Histogram, kCoefficients> histograms;
     histograms.fill(Histogram(kAllBins));
     const CosineBasis basis;
+    DistinctBlocks distinct;
     for (const Rect& window : windows) {
         for (int y = offset; y + 8 <= window.height; y += 8) {
             for (int x = offset + y / 8 % stride * 8; x + 8 <= window.width; x += 8 * stride) {
-                add_block(*stored.image, basis, window.x + x, window.y + y, histograms);
+                if (distinct.add(*stored.image, window.x + x, window.y + y))
+                    add_block(*stored.image, basis, window.x + x, window.y + y, histograms);
             }
         }
     }
+    if (distinct.count() < kLeastBlocks) return {};
     // Most coefficients are small, so the last bins are empty.
     for (Histogram& histogram : histograms) {
         while (!histogram.empty() && histogram.back() == 0.0) histogram.pop_back();

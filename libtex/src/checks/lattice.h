@@ -11,7 +11,10 @@ namespace tex::inline v1 {
 struct Lattice {
     double step = 0.0;      // distance between teeth, in units of slope
     double strength = 0.0;  // 0 (smooth) to 1 (every slope lies on a tooth)
-    int teeth = 0;          // with at least 1 % of the slopes other than 0: few are a map's own flat faces
+    // The share of sloping texels between whose neighbours the slope changes unevenly, by half a step or more. Steps of
+    // heights do this everywhere; the smooth curves of yarns and rivets, whose slopes grow by one step a texel, do not.
+    double uneven = 0.0;
+    int teeth = 0;  // with at least 1 % of the slopes other than 0: few are a map's own flat faces
 };
 
 // Looks for teeth at distances from 0.0196, which is 2.5 codes of 8 bits (finer ones are lost in the rounding of the

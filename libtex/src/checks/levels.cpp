@@ -86,27 +86,69 @@ struct Unit {
     }
 };
 
+constexpr double kLeastTexels = 1024.0;  // of a level that are no background: fewer show nothing
+
+struct WindowSums {
+    LevelSums sums;
+    double texels = 0.0;
+    void add(const WindowSums& other) {
+        sums.add(other.sums);
+        texels += other.texels;
+    }
+};
+
+// Calls what(first, count) for each run of texels of a window's row without background in them and beside them.
+template <class What>
+void each_clean_run(const Plane<float>* background, const Rect& window, int j, What&& what) {
+    if (background == nullptr) return what(0, window.width);
+    const Extent extent = background->extent();
+    const auto is_clean = [&](int i) {
+        for (int y = std::max(0, j - 1); y <= std::min(extent.height - 1, j + 1); ++y) {
+            for (int x = std::max(0, i - 1); x <= std::min(extent.width - 1, i + 1); ++x) {
+                if (background->at(x, y) > 0.0f) return false;
+            }
+        }
+        return true;
+    };
+    for (int i = 0; i < window.width; ++i) {
+        const int first = i;
+        while (i < window.width && is_clean(window.x + i)) ++i;
+        if (i > first) what(first, i - first);
+    }
+}
+
 // `unit` is for windows of this extent; its values are overwritten.
-Result<void> add_window(const Stored& stored, const NormalMap& averages, const Execution& execution, Unit& unit,
-                        LevelSums& all) {
+Result<void> add_window(const Stored& stored, const NormalMap& averages, const Plane<float>* background,
+                        const Execution& execution, Unit& unit, WindowSums& all) {
     const Rect& window = unit.window;
     const auto normalise = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) unit.normalise(averages, j);
     };
     if (auto done = parallel_for(execution, window.height, kRowsPerPiece, normalise); !done) return done;
-    std::vector<LevelSums> pieces(static_cast<std::size_t>((window.height + kRowsPerPiece - 1) / kRowsPerPiece));
+    std::vector<WindowSums> pieces(static_cast<std::size_t>((window.height + kRowsPerPiece - 1) / kRowsPerPiece));
     const auto sum = [&](int begin, int end) {
         NormalMap row(Extent{window.width, 1});
         const NormalRow s{row.x.row(0), row.y.row(0), row.z.row(0)};
         for (int j = begin; j < end; ++j) {
             vectors_of_row(stored, window.y + j, window.x, window.width, s.x, s.y, s.z);
-            add_level_row({s, Unit::row_of(averages, window, j), unit.components(j), unit.components(j - 1),
-                           unit.components(j + 1)},
-                          window.width, pieces[static_cast<std::size_t>(begin / kRowsPerPiece)]);
+            const VectorRow a = Unit::row_of(averages, window, j);
+            const auto from = [](NormalisedRow row, int first) {
+                return row.x == nullptr ? row : NormalisedRow{row.x + first, row.y + first};
+            };
+            WindowSums& piece = pieces[static_cast<std::size_t>(begin / kRowsPerPiece)];
+            each_clean_run(background, window, window.y + j, [&](int first, int count) {
+                add_level_row({{s.x + first, s.y + first, s.z + first},
+                               {a.x + first, a.y + first, a.z + first},
+                               from(unit.components(j), first),
+                               from(unit.components(j - 1), first),
+                               from(unit.components(j + 1), first)},
+                              count, piece.sums);
+                piece.texels += count;
+            });
         }
     };
     if (auto done = parallel_for(execution, window.height, kRowsPerPiece, sum); !done) return done;
-    for (const LevelSums& piece : pieces) all.add(piece);
+    for (const WindowSums& piece : pieces) all.add(piece);
     return {};
 }
 
@@ -181,20 +223,35 @@ Result<NormalMap> base_averages(const Stored& stored, const Execution& execution
     return map;
 }
 
+Plane<float> background_share(const Background& background, Extent base) {
+    Plane<float> whole(base);
+    for (int j = 0; j < base.height; ++j) {
+        float* const row = whole.row(j);
+        for (int i = 0; i < base.width; ++i) row[i] = background.holds(i, j) ? 1.0f : 0.0f;
+    }
+    return background_share(whole);
+}
+
+Plane<float> background_share(const Plane<float>& larger) {
+    Plane<float> share(level_extent(larger.extent(), 1));
+    for (int j = 0; j < share.extent().height; ++j)
+        average_row({larger, larger.extent(), 0}, share.extent(), j, share.row(j));
+    return share;
+}
+
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
-                           LevelMeasure& measure) {
-    LevelSums all;
-    double texels = 0.0;
+                           LevelMeasure& measure, const Plane<float>* background) {
+    WindowSums all;
     std::optional<Unit> unit;  // new memory for every window would take longer than the window
     for (const Rect& window : sample_windows(stored.extent())) {
         if (unit)
             unit->window = window;  // all have the same extent
         else
             unit.emplace(Unit{window});
-        if (auto done = add_window(stored, averages, execution, *unit, all); !done) return done;
-        texels += static_cast<double>(window.width) * window.height;
+        if (auto done = add_window(stored, averages, background, execution, *unit, all); !done) return done;
     }
-    measure = measure_of(all, texels, stored.has_z());
+    measure = background != nullptr && all.texels < kLeastTexels ? LevelMeasure{}
+                                                                 : measure_of(all.sums, all.texels, stored.has_z());
     measure.level = level;
     measure.extent = stored.extent();
     return {};

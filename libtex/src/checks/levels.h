@@ -5,6 +5,7 @@
 
 #include <tex/types.h>
 
+#include "checks/background.h"
 #include "checks/stored.h"
 
 namespace tex::inline v1 {
@@ -17,6 +18,10 @@ void vectors_of_row(const Stored& stored, int j, int first, int count, float* x,
 // share), not normalised: of vectors, and of the base level as it is stored. Errors: cancelled, out_of_memory.
 Result<NormalMap> averages_of(const NormalMap& larger, const Execution& execution);
 Result<NormalMap> base_averages(const Stored& stored, const Execution& execution);
+
+// The share of background in each texel of level 1, and the same of the next level.
+Plane<float> background_share(const Background& background, Extent base);
+Plane<float> background_share(const Plane<float>& larger);
 
 // Compares a level with the averages of the base level over the same texels. r is the normalised average, a is the
 // average before normalising, and s is the stored value. Only x and y of the three are compared, so that encodings with
@@ -36,8 +41,9 @@ struct LevelMeasure {
     double error_average = 0.0;     // root mean square of s - a
 };
 
-// Compares level `level`. Errors: cancelled, out_of_memory.
+// Compares level `level`. If `background` is given, texels that hold a share of it, and those beside them, are left
+// out: programs filter it in different ways. If too few remain, the signal is 0. Errors: cancelled, out_of_memory.
 Result<void> measure_level(const Stored& stored, const NormalMap& averages, int level, const Execution& execution,
-                           LevelMeasure& measure);
+                           LevelMeasure& measure, const Plane<float>* background = nullptr);
 
 }  // namespace tex::inline v1

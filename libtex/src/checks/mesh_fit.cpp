@@ -18,6 +18,22 @@ namespace {
 
 constexpr double kConfident = 0.99;
 
+constexpr double kOtherLengthShare = 0.05;  // of the texels: then a z that the engine rebuilds is another
+
+// Whether two decoders make the same of the map: the same vectors, from the same z.
+class SameDecoding {
+public:
+    explicit SameDecoding(const Subject& subject)
+        : z_counts_(subject.stored.has_z() && subject.counts.share(Property::off_length) > kOtherLengthShare) {}
+
+    bool operator()(Decoder a, Decoder b) const {
+        return same_vectors(a, b) && (!z_counts_ || rebuilds_z(a) == rebuilds_z(b));
+    }
+
+private:
+    bool z_counts_;
+};
+
 // A way of decoding, and what the seams are like then.
 struct Candidate {
     SeamSpace space;
@@ -28,7 +44,8 @@ struct Candidate {
 // The other ways with the same direction of green: each kind of decoder with each kind of tangents.
 class Candidates {
 public:
-    Candidates(const Subject& subject, const SeamSamples& samples) : subject_(subject), samples_(samples) {}
+    Candidates(const Subject& subject, const SeamSamples& samples)
+        : subject_(subject), samples_(samples), same_(subject) {}
 
     Result<void> make() {
         for (const TangentMethod method : {TangentMethod::mikktspace, TangentMethod::meshopt}) {
@@ -49,8 +66,8 @@ public:
         const bool y_up = best.space.y_up;
         const Decoder own = best.space.decoder;
         const TangentSource source = selected().source;
-        for (const Decoder kind : {Decoder::gltf, Decoder::substance_vertex, Decoder::three}) {
-            const Decoder decoder = same_vectors(kind, own) ? own : kind;
+        for (const Decoder kind : {Decoder::gltf, Decoder::substance_vertex, Decoder::three, Decoder::godot}) {
+            const Decoder decoder = same_(kind, own) ? own : kind;
             try_one(best, with(decoder, selected().tangents, source, y_up));
             if (source != TangentSource::mikktspace)
                 try_one(best, with(decoder, mikktspace_, TangentSource::mikktspace, y_up));
@@ -73,28 +90,29 @@ private:
 
     const Subject& subject_;
     const SeamSamples& samples_;
+    SameDecoding same_;
     std::vector<Float4> mikktspace_, meshopt_;
 };
 
 // The engines that decode as `decoder` does: "godot, substance-vertex".
-std::string engines_like(Decoder decoder) {
+std::string engines_like(Decoder decoder, const SameDecoding& same) {
     std::string names;
     for (const auto& row : kDecoderNames) {
-        if (same_vectors(row.value, decoder)) names.append(names.empty() ? "" : ", ").append(row.name);
+        if (same(row.value, decoder)) names.append(names.empty() ? "" : ", ").append(row.name);
     }
     return names;
 }
 
 // What the candidate is, as far as it differs from what is given.
-std::string difference_of(const Candidate& candidate, const Candidate& given) {
+std::string difference_of(const Candidate& candidate, const Candidate& given, const SameDecoding& same) {
     std::string text;
     const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
     if (candidate.space.y_up != given.space.y_up) {
         add("green points " + direction(candidate.space.y_up ? YAxis::up : YAxis::down) +
             ", or w of the tangents is flipped");
     }
-    if (!same_vectors(candidate.space.decoder, given.space.decoder))
-        add("the decoder is one of " + engines_like(candidate.space.decoder));
+    if (!same(candidate.space.decoder, given.space.decoder))
+        add("the decoder is one of " + engines_like(candidate.space.decoder, same));
     if (candidate.tangents != given.tangents)
         add("the tangents are those of " + std::string(name_of(kTangentSourceNames, candidate.tangents)));
     return text;
@@ -141,9 +159,10 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
     if (is_right && (verdict.slope < thresholds::kSeamFit || verdict.saved < thresholds::kSeamGap))
         return std::optional(evidence);
     const SeamEvidence then = seam_evidence(samples, best.gaps, extent);
-    Finding& finding = findings.add("N711", difference_of(best, given) + " (" + std::to_string(evidence.edges) +
-                                                " seam edges: " + figures(evidence) + "; then " + figures(then) +
-                                                "; confidence " + decimal(verdict.confidence, 3) + ")");
+    Finding& finding =
+        findings.add("N711", difference_of(best, given, SameDecoding(subject)) + " (" + std::to_string(evidence.edges) +
+                                 " seam edges: " + figures(evidence) + "; then " + figures(then) + "; confidence " +
+                                 decimal(verdict.confidence, 3) + ")");
     finding.figure = evidence.mean;
     finding.unit = "degrees";
     finding.confidence = std::max(0.5, verdict.confidence);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,9 @@ namespace {
 
 constexpr int kLeastSide = 16;         // of a level to judge: smaller levels have too few texels
 constexpr double kLeastSignal = 0.02;  // of components, 2.5 codes of 8 bits
-constexpr double kLeastDue = 0.01;     // if z is not stored: the least change by renormalising that can be seen
+constexpr double kLeastOfSignal = 0.35;
+constexpr double kCoarseRelated = 0.5;
+constexpr double kLeastDue = 0.01;  // if z is not stored: the least change by renormalising that can be seen
 constexpr double kFaded = 0.7;
 constexpr double kFadeRelated = 0.95;
 constexpr double kFadeShort = 0.01;  // fading does not average: the vectors stay unit vectors
@@ -57,8 +60,17 @@ void check_lengths(const std::vector<LevelMeasure>& levels, double base_length, 
     finding.regions = std::move(regions);
 }
 
-void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings) {
+// Whether little detail is left, relative to the level with the most: filters differ in what they leave of structures
+// finer than a texel, and blocks of colours round the rest.
+bool is_faint(const LevelMeasure& m, const std::vector<LevelMeasure>& levels) {
+    double most = 0.0;
+    for (const LevelMeasure& other : levels) most = std::max(most, other.signal);
+    return m.signal < kLeastOfSignal * most;
+}
+
+void check_relations(const std::vector<LevelMeasure>& levels, double related, Findings& findings) {
     for (const LevelMeasure& m : levels) {
+        if (is_faint(m, levels)) continue;
         const double shift = std::max(std::abs(m.shift_x), std::abs(m.shift_y));
         if (m.correlation > thresholds::kLevelRelated && shift > thresholds::kLevelShift && shift < 2.0) {
             Finding& finding =
@@ -68,8 +80,7 @@ void check_relations(const std::vector<LevelMeasure>& levels, Findings& findings
             finding.unit = "texels";
             finding.confidence = 0.95;
             finding.regions = {whole(m)};
-        } else if (m.correlation < thresholds::kLevelRelated &&
-                   m.stored_signal > kLeastSignal) {  // else the level faded to flat
+        } else if (m.correlation < related && m.stored_signal > kLeastSignal) {  // else the level faded to flat
             Finding& finding = findings.add("N502", name_level(m) + " correlates by " + decimal(m.correlation, 2) +
                                                         " with the filtered base level");
             finding.figure = m.correlation;
@@ -120,22 +131,31 @@ Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
     if (!subject.has_vectors || subject.constant || texture.levels.size() < 2) return {};
     auto averages = base_averages(subject.stored, subject.execution);
     std::vector<LevelMeasure> levels;
+    std::optional<Plane<float>> background;  // the share of it in each texel of the level
     for (int k = 1; k < static_cast<int>(texture.levels.size()); ++k) {
         if (k > 1) averages = averages_of(*averages, subject.execution);
         if (!averages) return averages.error();
         const Extent extent = averages->extent();
         if (extent.width < kLeastSide || extent.height < kLeastSide) break;
+        if (subject.background)
+            background = background ? background_share(*background)
+                                    : background_share(*subject.background, subject.stored.extent());
         const auto image = decode_windows(subject, k);
         if (!image) return image.error();
         Stored stored = subject.stored;
         stored.image = &*image;
         LevelMeasure measure;
-        if (auto done = measure_level(stored, *averages, k, subject.execution, measure); !done) return done.error();
+        if (auto done =
+                measure_level(stored, *averages, k, subject.execution, measure, background ? &*background : nullptr);
+            !done)
+            return done.error();
         if (measure.signal > kLeastSignal) levels.push_back(measure);
     }
     if (!subject.options.any_length)
         check_lengths(levels, subject.counts.mean_length, subject.stored.has_z(), findings);
-    check_relations(levels, findings);
+    // Palettes of 5:6:5 bits keep less of fine noise than BC5 and DXT5nm do.
+    const bool is_coarse = subject.stored.in_blocks && subject.stored.has_z();
+    check_relations(levels, (is_coarse ? kCoarseRelated : 1.0) * thresholds::kLevelRelated, findings);
     check_fade(levels, findings);
     return {};
 }

@@ -217,8 +217,8 @@ constexpr Rule kRules[] = {
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
      "The slopes of a height field have no curl; here they have none only if y is turned. y=up is OpenGL, Unity, "
      "Blender, glTF; y=down is DirectX, Unreal. Decided if the correlation is 0.2 or more, the confidence 0.99 or "
-     "more, "
-     "and at least half of the texels hold normals.",
+     "more, at least half of the texels hold normals, and x changes upwards and y to the right with 1.7 % of the "
+     "energy or more that they have along their own axes.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
      "Maps of both conventions were pasted together. Judged only where most regions show one direction clearly.", "",

@@ -15,6 +15,7 @@ constexpr double kOffLengthShare = 0.05;
 constexpr double kBelowShare = 0.0005;
 constexpr double kBeyondShare = 0.001;
 constexpr double kNullShare = 0.0001;
+constexpr double kNullShareBesideGrey = 0.002;  // if there is a background: what JPEG left of it far from its edge
 constexpr double kBehindShare = 0.05;
 constexpr double kGreyShare = 0.999;
 constexpr double kColorShare = 0.9;
@@ -51,7 +52,7 @@ void check_lengths(const Subject& subject, Findings& findings) {
     const TexelCounts& counts = subject.counts;
     if (counts[Property::not_finite].count > 0)
         add_counted(subject, findings, "N204", Property::not_finite, " are NaN or infinite");
-    if (counts.share(Property::null_vector) > kNullShare) {
+    if (counts.share(Property::null_vector) > (subject.background ? kNullShareBesideGrey : kNullShare)) {
         add_counted(subject, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
     if (!subject.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {

@@ -10,7 +10,9 @@
 namespace tex::inline v1 {
 
 [[nodiscard]] inline Error undecided_y(const std::string& path) {
-    return {ErrorCode::bad_data, path, "which way green points does not show clearly in the texels"};
+    return {ErrorCode::bad_data, path,
+            "which way green points does not show clearly in the texels; say up or down instead of "
+            "measured"};
 }
 
 }  // namespace tex::inline v1
