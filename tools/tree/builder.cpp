@@ -320,7 +320,10 @@ ExitCode BuildRun::print_summary(bool is_interrupted) {
     std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),
                                       options_.dry_run ? "to make" : "made", totals_.current.load());
     if (cache_.is_used()) summary += fmt::format(", {} from the cache", totals_.cached.load());
-    if (cache_.damaged() > 0) summary += fmt::format(" ({} damaged entries repaired)", cache_.damaged());
+    if (cache_.damaged() > 0) {
+        summary +=
+            fmt::format(" ({} damaged {} repaired)", cache_.damaged(), cache_.damaged() == 1 ? "entry" : "entries");
+    }
     if (totals_.failed > 0) summary += fmt::format(", {} failed", totals_.failed.load());
     if (is_full_) summary += fmt::format(", {} not tried", work_.tasks.size() - finished_.load());
     if (totals_.pruned > 0)
