@@ -18,7 +18,7 @@ strict="-fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -W
 compilers=() c_compilers=()
 for name in g++ clang++-14; do if command -v "$name" >/dev/null; then compilers+=("$name"); fi; done
 for name in gcc clang-14; do if command -v "$name" >/dev/null; then c_compilers+=("$name"); fi; done
-[ ${#compilers[@]} -gt 0 ] && [ ${#c_compilers[@]} -gt 0 ] || fail "there is no compiler"
+for list in "${#compilers[@]}" "${#c_compilers[@]}"; do [ "$list" -gt 0 ] || fail "there is no compiler"; done
 ways=()
 for standard in c++20 c++2b; do
     for exceptions in '' ' -fno-exceptions -fno-rtti'; do
