@@ -26,6 +26,8 @@ TEST(DocumentedFailures, OfCheck) {
     const auto compared = [&](auto change, int set) { return failure_of(compare(map, map, sheet(change), set)); };
     Requirements requirements;
     const Texture texture = *pack(chain_from(flat_map({8, 8})), {Encoding::rgba8});
+    Texture unknown = texture;
+    unknown.swizzle_known = false;
     const auto checked = [&](auto change) {
         CheckOptions options;
         change(options);
@@ -33,6 +35,9 @@ TEST(DocumentedFailures, OfCheck) {
     };
     CheckOptions wrong;
     wrong.enable = {"N999"};
+    const std::string crate = TEX_SOURCE_DIR "/samples/crate_low.glb";
+    ModelCheckOptions elsewhere;
+    elsewhere.material = "glass";
     expect_all({
         {"compare: check_part(part) fails", ErrorCode::bad_data, compared(kBroken, 0)},
         {"compare: no such set of UVs", ErrorCode::bad_option, compared(kUnchanged, 1)},
@@ -44,6 +49,8 @@ TEST(DocumentedFailures, OfCheck) {
         {"largest_of_cells: no texels", ErrorCode::bad_option, failure_of(largest_of_cells({}, 4))},
         {"largest_of_cells: any side", std::nullopt, failure_of(largest_of_cells(Plane<float>({2, 2}, 0), 2147483647))},
         {"largest_of_cells: side", ErrorCode::bad_option, failure_of(largest_of_cells(Plane<float>({2, 2}, 0.0f), 0))},
+        {"compare a mesh", ErrorCode::cancelled, failure_of(compare(map, map, sheet(kUnchanged), 0, kStopped))},
+        {"guess_swizzle", ErrorCode::cancelled, failure_of(guess_swizzle(unknown, kStopped))},
         {"add_requirement: key", ErrorCode::bad_option, failure_of(add_requirement(requirements, "colour=red"))},
         {"add_requirement: value", ErrorCode::bad_option, failure_of(add_requirement(requirements, "mips=some"))},
         {"check: enable", ErrorCode::bad_option, checked([](auto& o) { o.enable = {"N999"}; })},
@@ -53,7 +60,8 @@ TEST(DocumentedFailures, OfCheck) {
          })},
         {"check_file: bad_option", ErrorCode::bad_option, failure_of(check_file("none.png", wrong))},
         {"check_model: those of read_model()", ErrorCode::io, failure_of(check_model("none.gltf"))},
-        {"check_model: bad_option", ErrorCode::bad_option, failure_of(check_model("none.gltf", {wrong}))},
+        {"check_model: bad_option", ErrorCode::bad_option, failure_of(check_model(crate, {wrong}))},
+        {"check_model: there is no such material", ErrorCode::bad_option, failure_of(check_model(crate, elsewhere))},
     });
 }
 
@@ -62,7 +70,7 @@ TEST(DocumentedFailures, OfSurfacesAndPictures) {
     NormalMap wide;
     for (Plane<float>* plane : {&wide.x, &wide.y, &wide.z}) *plane = Plane<float>({kMaxExtent + 1, 1}, 0.5f);
     const MipChain chain = chain_from(flat_map({8, 8}));
-    const auto shown = [&](Show show, auto change, const auto& tangents, int set = 0) {
+    const auto shown = [&](Show show, auto change, const auto& tangents, int set = 0, int side = 16) {
         const MeshPart part = sheet(change);
         const TangentSpace space = {part, tangents, set};
         PreviewScene scene;
@@ -70,9 +78,13 @@ TEST(DocumentedFailures, OfSurfacesAndPictures) {
         scene.mesh = &space;
         PreviewOptions options;
         options.show = show;
-        options.size = {16, 16};
+        options.size = {side, side};
         return failure_of(preview(scene, options));
     };
+    const auto stack = [](MeshPart& part) {
+        for (int k = 0; k < 3000; ++k) part.indices.insert(part.indices.end(), {0, 1, 2, 0, 2, 3});
+    };
+    const std::vector<Float4> many(6 + 6 * 3000, {1, 0, 0, 1});
     PreviewOptions tangents;
     tangents.show = Show::tangents;
     Image two;
@@ -92,6 +104,7 @@ TEST(DocumentedFailures, OfSurfacesAndPictures) {
         {"no such set of UVs", ErrorCode::bad_option, shown(Show::lit, kUnchanged, kTangents, 1)},
         {"not as many tangents", ErrorCode::bad_option, shown(Show::lit, kUnchanged, kFewTangents)},
         {"UVs beyond a million", ErrorCode::unsupported, shown(Show::uv, kFar, kTangents)},
+        {"more than 1024 deep", ErrorCode::unsupported, shown(Show::lit, stack, many, 0, 1024)},
         {"picture_of: a plane is missing", ErrorCode::bad_option, failure_of(picture_of(two))},
         {"contact_sheet: empty", ErrorCode::bad_option, failure_of(contact_sheet({}))},
         {"split_view: extents", ErrorCode::bad_option, failure_of(split_view({small, ""}, {large, ""}))},

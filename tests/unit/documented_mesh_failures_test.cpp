@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -31,6 +32,14 @@ TEST(DocumentedFailures, OfMeshes) {
     whole.tangents = kTangents;
     Model model;
     model.mesh.materials.emplace_back();
+    Mesh mesh;
+    mesh.parts.push_back(sheet(kUnchanged));
+    ModelCheckOptions unknown;
+    unknown.checks.enable = {"N999"};
+    MeshReadOptions absent;
+    absent.reader.reader = "/nowhere/tex-reader";
+    const std::string ply = testing::TempDir() + "documented_failures.ply";
+    std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n";
     ModelMap without;
     without.image = -1;
     expect_all({
@@ -45,6 +54,9 @@ TEST(DocumentedFailures, OfMeshes) {
         {"stored_tangents: there are none", ErrorCode::bad_option, failure_of(stored_tangents(whole.part))},
         {"read_model: those of read_mesh()", ErrorCode::io, failure_of(read_model("none.gltf"))},
         {"read_map: no image", ErrorCode::bad_data, failure_of(read_map(model, without))},
+        {"select_part", ErrorCode::cancelled, failure_of(select_part(mesh, {}, kStopped))},
+        {"check_map: see validate()", ErrorCode::bad_option, failure_of(check_map(model, without, unknown))},
+        {"read_mesh: the reader", ErrorCode::io, failure_of(read_mesh(ply, absent))},
         {"maps_of: no such material", ErrorCode::bad_option, failure_of(maps_of(model, "stone"))},
     });
 }
