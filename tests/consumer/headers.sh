@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# headers.sh BUILD [all]: every header of the installation BUILD/stage compiles without another one before it and without
-# warnings: those of C++ with both compilers as C++20 and C++23, with and without exceptions and run-time types; tex_c.h
-# as C11, C17, C++11 and C++20. tex.h and tex_c.h are tried in every way, each other header in one, by turns; with
-# "all", in every way, which takes some minutes.
+# headers.sh BUILD [all]: every header of the installation BUILD/stage compiles without another one before it and
+# without warnings: those of C++ with both compilers as C++20 and C++23, with and without exceptions and run-time types;
+# tex_c.h as C11, C17, C++11 and C++20. tex.h and tex_c.h are tried in every way, each other header in one, by turns;
+# with "all", in every way, which takes some minutes.
 set -euo pipefail
 build=$1
 what=${2:-}

@@ -38,8 +38,8 @@ done
 [ -e "$scratch/wanted.txt" ] || fail "there is no C compiler"
 grep -q "^$wanted" "$scratch/wanted.txt" || fail "not the bytes of a chain: $(cat "$scratch/wanted.txt")"
 
-gcc -std=gnu11 -O1 -fno-builtin "${strict[@]}" "$here/c/no_allocation.c" "$here/c/allocations.c" -L "$libdir" -ltex -lm \
-    -o "$scratch/no_allocation"
+gcc -std=gnu11 -O1 -fno-builtin "${strict[@]}" "$here/c/no_allocation.c" "$here/c/allocations.c" \
+    -L "$libdir" -ltex -lm -o "$scratch/no_allocation"
 "$scratch/no_allocation" || fail "a function allocates memory, or fails"
 
 same Python python3 "$samples/bake_to_bc5.py" "$libdir/libtex.so"
