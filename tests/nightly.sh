@@ -130,6 +130,7 @@ fuzz() {
 package() {
     local debs packages=(libtex1 libtex-dev libtex-tools libtex-reader-oiio python3-libtex libtex-oiio) status=0
     ctest --preset release --output-junit "$results/package.xml" -R '^consumer[.]packages$' || return 1
+    script headers tests/consumer/headers.sh build/release all || status=1
     mapfile -t debs < <(find build/release/consumer-packages -maxdepth 1 -name '*.deb')
     lintian --allow-root --fail-on error,warning "${debs[@]}" || status=1
     system_files >"$results/before.txt"

@@ -324,6 +324,7 @@ Result<CheckReport> check_map(const Model& model, const ModelMap& map, const Mod
 Result<std::vector<CheckReport>> check_model(const std::string& path, const ModelCheckOptions& options,
                                              const ReadOptions& read, const Execution& execution) {
     return guarded([&]() -> Result<std::vector<CheckReport>> {
+        if (auto valid = validate(options.checks); !valid) return valid.error();
         MeshReadOptions how;
         how.reader = read;
         const auto model = read_model(path, how);

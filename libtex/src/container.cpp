@@ -14,6 +14,7 @@
 #include "formats/codecs.h"
 #include "formats/reader/reader.h"
 #include "formats/texture_rows.h"
+#include "rows/usable.h"
 #include "threads/guard.h"
 
 namespace tex::inline v1 {
@@ -82,6 +83,8 @@ Encoding default_encoding(Container container) { return codec_of(container).defa
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,
                                            const Execution& execution) {
     return guarded([&]() -> Result<std::vector<std::byte>> {
+        if (const Result<void> usable = check_usable(texture); !usable) return usable.error();
+        if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         const Codec& codec = codec_of(container);
         if (is_bptc(texture.format)) return check_holds(codec, texture.format, {}).error();
         if (codec.layout != nullptr || options.zstd != 0) {

@@ -62,7 +62,10 @@ Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Exe
 Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side) {
     return guarded([&]() -> Result<Plane<float>> {
         const Extent extent = degrees.extent();
-        const int cell = (std::max(extent.width, extent.height) + side - 1) / side;
+        if (auto usable = check_usable(extent, "the map"); !usable) return usable.error();
+        if (side < 1) return bad_option("side: must be 1 or more");
+        const int longest = std::max(extent.width, extent.height), cells_along = std::min(side, longest);
+        const int cell = (longest + cells_along - 1) / cells_along;
         Plane<float> cells({(extent.width + cell - 1) / cell, (extent.height + cell - 1) / cell}, 0.0f);
         for (int j = 0; j < extent.height; ++j) {
             for (int i = 0; i < extent.width; ++i) {

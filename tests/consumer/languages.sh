@@ -37,14 +37,9 @@ for cc in gcc clang-14; do
 done
 [ -e "$scratch/wanted.txt" ] || fail "there is no C compiler"
 grep -q "^$wanted" "$scratch/wanted.txt" || fail "not the bytes of a chain: $(cat "$scratch/wanted.txt")"
-# The header alone, in C and in C++ without exceptions.
-echo '#include <tex/tex_c.h>' >"$scratch/header.c"
-cp "$scratch/header.c" "$scratch/header.cpp"
-gcc -std=c11 "${strict[@]}" -c "$scratch/header.c" -o "$scratch/header.o"
-g++ -std=c++11 -fno-exceptions -fno-rtti "${strict[@]}" -c "$scratch/header.cpp" -o "$scratch/header.o"
 
-gcc -std=gnu11 -O1 -fno-builtin "${strict[@]}" "$here/c/no_allocation.c" -L "$libdir" -ltex -lm \
-    -o "$scratch/no_allocation"
+gcc -std=gnu11 -O1 -fno-builtin "${strict[@]}" "$here/c/no_allocation.c" "$here/c/allocations.c" \
+    -L "$libdir" -ltex -lm -o "$scratch/no_allocation"
 "$scratch/no_allocation" || fail "a function allocates memory, or fails"
 
 same Python python3 "$samples/bake_to_bc5.py" "$libdir/libtex.so"

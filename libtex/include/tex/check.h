@@ -245,7 +245,7 @@ struct CheckReport {
     std::string map = {};           // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
     std::vector<Finding> findings;  // by rule id, then level
     int explained = 0;              // findings left out because another one explains them
-    std::optional<Error> error;     // the file could not be read (then findings hold N101) or checked
+    std::optional<Error> error;     // the file could not be read (see check_file()) or checked
 
     // What the file is, if it could be read.
     Format format = Format::rgba8_unorm;
@@ -297,8 +297,9 @@ struct ModelCheckOptions {
                                                                    const ReadOptions& read = {},
                                                                    const Execution& execution = {});
 
-// Reads a file and checks it. If it cannot be read, the report has a finding (N101) and the Error. If memory runs out
-// or the check is cancelled, the report has only CheckReport::error. Errors: bad_option.
+// Reads a file and checks it. If its content cannot be read (bad_data, unsupported), the report has a finding, N101 or
+// N114, and the Error. If the file cannot be opened, memory runs out or the check is cancelled, the report has only
+// CheckReport::error. Errors: bad_option (see validate()).
 [[nodiscard]] TEX_API Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
                                                      const ReadOptions& read = {}, const Execution& execution = {});
 

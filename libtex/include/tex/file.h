@@ -192,11 +192,13 @@ struct WriteOptions {
 // believes them.
 //
 // Errors: unsupported  the container cannot hold the format (the reason says what it can hold), or zstd
-//         bad_option   zstd is not from 0 to 22, or jpeg_quality not from 1 to 100
+//         bad_option   zstd is not from 0 to 22, or jpeg_quality not from 1 to 100; the texture has no level, or one
+//                      without the extent of level_extent() or level_bytes() bytes
 //         io           the reader process cannot be started
 //         bad_data     the reader process crashed or did not end in time
 //         out_of_memory, cancelled
-// PNG and EXR are compressed on all threads. The same bytes for every number of threads.
+// PNG and EXR are compressed on all threads, and call Execution::progress from row to row; the others call it once, at
+// the start. The same bytes for every number of threads.
 [[nodiscard]] TEX_API Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container,
                                                                  const WriteOptions& options = {},
                                                                  const Execution& execution = {});

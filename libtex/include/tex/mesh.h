@@ -487,8 +487,8 @@ struct ConvertedMap {
 //
 // Errors: bad_data     check_part(space.part) fails
 //         bad_option   the map has no texels; as validate(options); no normals, no such set of UVs, not as many
-//         tangents as corners; no triangle covers a texel unsupported  UVs beyond a million; a triangle covers more
-//         than 16 repeats of the map, or more than 2^22
+//                      tangents as corners; no triangle covers a texel
+//         unsupported  UVs beyond a million; a triangle covers more than 16 repeats of the map, or more than 2^22
 //                      texels, in one direction
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.

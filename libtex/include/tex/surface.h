@@ -91,7 +91,7 @@ struct Integration {
 // prime factors above 5).
 //
 // Errors: bad_option  the map has no texels, or more than kMaxExtent in a direction; as validate(options)
-//         bad_data  z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
+//         bad_data    z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] TEX_API Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options = {},
@@ -111,8 +111,7 @@ TEX_API void stretch_heights(Plane<float>& heights, float low, float high, const
 //                  surface, 1 / r on a sphere of r texels (do Carmo: Differential Geometry of Curves and Surfaces,
 //                  1976)
 //     divergence   -(dp/dx + dq/dy) / 2: half the negative Laplacian of the heights in texel widths. Equal to mean
-//     where
-//                  the surface is flat, larger on slopes; linear in the heights
+//                  where the surface is flat, larger on slopes; linear in the heights
 enum class CurvatureKind { mean, divergence };
 
 inline constexpr Named<CurvatureKind> kCurvatureKindNames[] = {

@@ -324,7 +324,8 @@ TEX_C_API int32_t tex_encode_prepare(const tex_encode_options* options);
 TEX_C_API size_t tex_encode_size(int32_t width, const tex_encode_options* options);
 
 // Rows [first, end) of normals, as rows of texels or blocks. `first` is a multiple of the height of a block, and `end`
-// too, unless it is the height. Row 0 of texels or of blocks goes to `bytes`, the others follow at `pitch` bytes.
+// too, unless it is the height. `bytes` is where the level begins, whatever rows are asked for: row 0 of texels or of
+// blocks goes there, the others follow at `pitch` bytes.
 // Encodings without z do not read it: map->z may be null. Components are finite; they are clamped to [-1, 1].
 //
 // Fails with TEX_NOT_PREPARED: see tex_encode_prepare().

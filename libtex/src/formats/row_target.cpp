@@ -3,6 +3,7 @@
 #include "formats/row_target.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -45,10 +46,31 @@ private:
     std::vector<std::shared_ptr<RowWork>> waiting_;
 };
 
-Result<void> put_level(RowTarget& target, int k, const Level& level, Workers& workers) {
+// Asks Execution::progress from time to time, as rows of all levels are put.
+class RowProgress {
+public:
+    RowProgress(const Execution& execution, const Texture& texture, std::size_t levels)
+        : progress_(execution.progress) {
+        for (std::size_t k = 0; k < levels; ++k) rows_ += texture.levels[k].extent.height;
+    }
+    // Before the next row.
+    Result<void> next() {
+        constexpr int kRowsOfAnAnswer = 64;
+        const int done = done_++;
+        if (!progress_ || done % kRowsOfAnAnswer != 0 || progress_(static_cast<double>(done) / rows_)) return {};
+        return Error{ErrorCode::cancelled, {}, "cancelled"};
+    }
+
+private:
+    const std::function<bool(double)>& progress_;
+    int rows_ = 0, done_ = 0;
+};
+
+Result<void> put_level(RowTarget& target, int k, const Level& level, Workers& workers, RowProgress& progress) {
     if (!target.has_work()) return target.put(k, level.bytes.data(), level.extent.height);
     const std::size_t row_bytes = level.bytes.size() / static_cast<std::size_t>(level.extent.height);
     for (int j = 0; j < level.extent.height; ++j) {
+        if (Result<void> asked = progress.next(); !asked) return asked;
         const std::byte* const row = level.bytes.data() + static_cast<std::size_t>(j) * row_bytes;
         if (Result<void> put = target.put(k, row, 1); !put) return put;
         if (Result<void> taken = workers.take(); !taken) return taken;
@@ -72,8 +94,9 @@ Result<std::vector<std::byte>> encode_rows(OpenTarget open, const Texture& textu
     if (!target) return target.error();
     const std::size_t levels = all_levels ? texture.levels.size() : 1;
     Workers workers(**target, execution.quiet());
+    RowProgress progress(execution, texture, levels);
     for (std::size_t k = 0; k < levels; ++k) {
-        const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k], workers);
+        const Result<void> put = put_level(**target, static_cast<int>(k), texture.levels[k], workers, progress);
         if (!put) return put.error();
     }
     if (const Result<void> done = workers.finish(); !done) return done.error();
