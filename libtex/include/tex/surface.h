@@ -73,10 +73,11 @@ struct Integration {
 //     slopes of 1e15    bake() clamps them.
 //
 // Otherwise heights come back within 1e-4 of their range, for every kernel and wrap, up to extents of 16384 (within
-// 5e-3 at 2^20, where the rounding of floats adds up); within 5e-4 for sobel5 on an axis that does not repeat, where
-// it hardly sees how the heights end at the border. On other maps, the angle between the map and bake() of the
-// result (`curl`, `degrees`) is what no height field can have. Rounding to 8 bits leaves a few tenths of a degree; more
-// shows painting, blending, resizing, another kernel or damage.
+// 5e-3 at 2^20, where the rounding of floats adds up). On axes that do not repeat, kernels that smooth hardly see how
+// the heights end at the border: within 5e-4 for sobel5, and for gaussian within 2e-2 if sigma is above 1, within 7e-2
+// if it is above 2. On other maps, the angle between the map and bake() of the result (`curl`, `degrees`) is what no
+// height field can have. Rounding to 8 bits leaves a few tenths of a degree; more shows painting, blending, resizing,
+// another kernel or damage.
 //
 // Texels with z below options.least_z have no usable slope, and neither have those with a component that is NaN or
 // infinite. They count as unknown: the sum above is without them. The equation is then solved several times, up to
