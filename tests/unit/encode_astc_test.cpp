@@ -188,7 +188,8 @@ double mean_angle(const std::vector<float>& a, const std::vector<float>& b) {
 
 // Maps of sharp steps between flat parts, such as panels, are better with three partitions, which libastcenc tries; the
 // benchmark has them.
-// Two values with a slanting border need a weight for each texel, of two levels. (astcenc -exhaustive finds such blocks.)
+// Two values with a slanting border need a weight for each texel, of two levels. (astcenc -exhaustive finds such
+// blocks.)
 TEST(AstcEncode, BestKeepsTwoValuesWithASlantingBorder) {
     const Extent extent{64, 64};
     std::vector<float> xy;
