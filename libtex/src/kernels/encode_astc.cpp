@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "blocks/astc_decode.h"
+#include "blocks/astc_ise.h"
 #include "blocks/extent.h"
 #include "kernels/astc_guess.h"
 #include "memory/lent_memory.h"
@@ -32,16 +33,17 @@ struct Spending {
     float worth = 0;   // the squared error of a texel from which several partitions are tried
     int polished = 0;  // the best of all of these are fitted again, with
     AstcSteps polish;
+    bool coarse = false;  // also tries the plans of coarse_plans()
 };
 
 Spending spending_of(Format format, Effort effort) {
     // Many weights make up for endpoints that are not the best to begin with.
     const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}, false};
         case Effort::best:
-            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}};
-        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 3.0f, 0, {}};
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}, true};
+        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 3.0f, 0, {}, false};
     }
 }
 
@@ -71,9 +73,27 @@ struct Candidate {
     int place = 0;  // among the others: std::sort() keeps no order
 };
 
+// Plans that give each texel one weight of two or three levels. Guesses expect texels between the levels, and so never
+// choose these plans for blocks whose texels are all close to two or three points of a line. There are at most kCoarse.
+constexpr int kCoarse = 2;
+struct CoarsePlans {
+    int count = 0;
+    std::array<int, kCoarse> plan{};
+};
+CoarsePlans coarse_plans(const AstcPlans& plans) {
+    CoarsePlans coarse;
+    for (std::size_t k = 0; k < plans.plans.size(); ++k) {
+        const AstcPlan& plan = plans.plans[k];
+        const bool is_plain = plan.partitions == 1 && plan.mode.planes == 1 && plan.grid->is_full;
+        if (!is_plain || kAstcRangeTable[plan.mode.range].levels > 3) continue;
+        coarse.plan[static_cast<std::size_t>(coarse.count++)] = static_cast<int>(k);
+    }
+    return coarse;
+}
+
 // The most candidates that a block has.
 int most_candidates(const Spending& spending) {
-    return spending.guesses + spending.patterns[0] * spending.reach.part_grids[0] +
+    return spending.guesses + (spending.coarse ? kCoarse : 0) + spending.patterns[0] * spending.reach.part_grids[0] +
            spending.patterns[1] * spending.reach.part_grids[1];
 }
 
@@ -95,6 +115,7 @@ public:
         range_.reserve(place(most));
         some_.reserve(place(most));
         candidates_.reserve(place(most * most_candidates(spending)));
+        if (spending.coarse) coarse_ = coarse_plans(plans_);
     }
 
     // The first texel of a channel of a block; the others follow at distances of lanes().
@@ -130,6 +151,7 @@ private:
     WorkingVector<float> range_;
     WorkingVector<Candidate> candidates_;
     WorkingVector<Candidate> some_;
+    CoarsePlans coarse_;
     alignas(64) float gathered_[3][kAstcMostPlanned * kAstcLanes];
     AstcFits fits_;
     AstcGuesses guesses_;
@@ -155,7 +177,15 @@ void Batch::guess() {
             range_[place(first + l)] = guesses_.range[l];
             // A little more than nothing, for guesses of 0.
             const float most = std::min(kNone, spending_.likely * (guesses_.error[l] + 1.0f));
-            if (guesses_.range[l] > 0.0f) add(first + l, l, most);
+            if (guesses_.range[l] <= 0.0f) continue;
+            const std::size_t begin = candidates_.size();
+            add(first + l, l, most);
+            for (int k = 0; k < coarse_.count; ++k) {
+                const int plan = coarse_.plan[place(k)];
+                const auto is_plan = [plan](const Candidate& added) { return added.plan == plan; };
+                if (std::none_of(candidates_.begin() + static_cast<std::ptrdiff_t>(begin), candidates_.end(), is_plan))
+                    candidates_.push_back({first + l, plan, 0, 0.0f});
+            }
         }
     }
 }
