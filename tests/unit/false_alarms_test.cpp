@@ -174,5 +174,25 @@ TEST(FalseAlarms, JpegAroundGreyLeavesNoVectorsWithoutADirection) {
     }
 }
 
+// Corrugated sheet, as a JPEG: what the codec leaves across the edges has an axis, and blue is that of other texels.
+TEST(FalseAlarms, SawToothsAsJpegAreNeitherTurnedNorOtherData) {
+    for (const int period : {8, 16, 32, 64}) {
+        for (const float steep : {2.0f, 4.0f, 8.0f}) {
+            for (const bool across : {false, true}) {
+                const auto saw = [&](double x, double y) {
+                    const double at = (across ? y : x) / kFullTurn * kAlarmExtent.width / period;
+                    return at + 1e-9 - std::floor(at + 1e-9);
+                };
+                for (const int quality : {60, 75, 85, 92}) {
+                    const Ids found =
+                        ids(reference::texture_of(reference::jpeg(reference::codes_of(baked(saw, steep)), quality)));
+                    EXPECT_EQ(found.count("N309") + found.count("N219"), 0u)
+                        << period << " " << steep << " " << across << " quality " << quality;
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace tex

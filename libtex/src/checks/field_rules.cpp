@@ -18,17 +18,33 @@ constexpr double kSoundCorrelation = 0.9;
 constexpr double kMostBehind = 0.05;   // share of texels that face away: more is object space
 constexpr double kLeastRms = 0.03;     // of changes over two texels: rounding to 8 bits gives 0.0045
 constexpr double kMostShared = 0.5;    // see TurnScale::shared()
-constexpr double kLeastOther = 0.015;  // of the energy of p in that of q or the other way: less is what a codec mixed
+constexpr double kLeastOther = 0.015;  // of the energy of p in that of q or the other way: less is one direction
+constexpr double kClearAxis = 0.5;     // strength of an axis that counts, and by how many degrees such axes may differ:
+constexpr double kMostApart = 15.0;    // turned maps of which scales show more than rounding differ by at most 11
 constexpr double kMostTurned = 75.0;   // a quarter turn is the same as exchanged channels: N308
 
-// The scale with the clearest axis, among those that show more than rounding.
+bool shows_more_than_rounding(const TurnScale& scale) { return scale.rms() >= kLeastRms; }
+
+// Slopes that all lie along one axis, as those of corrugated sheet do: JPEG then makes an axis of what is left.
+bool has_one_direction(const TurnScale& scale) {
+    const auto [less, more] = std::minmax(scale.p_square, scale.q_square);
+    return scale.shared() > kMostShared || less < kLeastOther * more;
+}
+
+// The scale with the clearest axis, if a picture that was turned explains all scales: each has slopes of two
+// directions, and clear axes agree.
 const TurnScale* clearest_scale(const Turn& turn) {
     const TurnScale* best = nullptr;
     for (const TurnScale& scale : turn.scale) {
-        if (scale.rms() < kLeastRms || scale.shared() > kMostShared) continue;
-        const auto [less, more] = std::minmax(scale.p_square, scale.q_square);
-        if (less < kLeastOther * more) continue;  // all slopes lie along one axis
+        if (!shows_more_than_rounding(scale)) continue;
+        if (has_one_direction(scale)) return nullptr;
         if (best == nullptr || scale.clearest().strength() > best->clearest().strength()) best = &scale;
+    }
+    if (best == nullptr) return nullptr;
+    for (const TurnScale& scale : turn.scale) {
+        if (!shows_more_than_rounding(scale) || scale.clearest().strength() < kClearAxis) continue;
+        const double apart = std::abs(scale.clearest().angle() - best->clearest().angle());
+        if (std::min(apart, 180.0 - apart) > kMostApart) return nullptr;
     }
     return best;
 }

@@ -87,11 +87,13 @@ bool ZEvidence::is_something_else() const {
 
 bool ZEvidence::is_surely_something_else() const {
     constexpr double kShortShare = 0.1, kFollowsShort = 0.6;
-    constexpr double kOffShare = 0.05, kFollowsOff = 0.15;
+    constexpr double kOffShare = 0.05, kFollowsOff = 0.15, kVariesMuch = 0.035 * 1024;
     if (all_.count < kLeastTexels) return false;
     const double correlation = all_.correlation();
     const auto share = [this](std::int64_t texels) { return all_.mean(texels); };
     if (share(short_) > kShortShare && correlation < kFollowsShort) return true;
+    // Where z varies little, JPEG makes blue that of other texels along sharp edges, and there is nothing to follow.
+    if (all_.rebuilt_variance() < kVariesMuch * kVariesMuch) return false;
     return share(over_) > kOffShare && share(under_) > kOffShare && correlation < kFollowsOff;
 }
 
