@@ -302,7 +302,7 @@ TEST_F(BuildNormalsWatch, AHighMeshThatHasChangedIsTransferredAgain) {
 [[rule]]
 match = "art/*_low.obj"
 name = "out/{stem:-_low}_n.<UDIM>.png"
-steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", size = "32", height-out = "out/h.<UDIM>.exr" } } ]
+steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", extent = "32", height-out = "out/h.<UDIM>.exr" } } ]
 )");
     Background builder(scratch_, "build-normals", {"--watch", "--no-sync"});
     ASSERT_TRUE(prints(builder, "1 made, 0 up to date\n"));
