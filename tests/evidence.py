@@ -27,7 +27,8 @@ JUDGES = [
 
 # What is not shown by a test here, so that nobody has to look for it.
 OPEN = [
-    "Mutation testing: not done; no count of surviving mutants exists.",
+    "Mutation testing: by hand alone. Of 98 single mistakes in the code that one review named, tests kill 85; 11 are equal "
+    "in effect, and 2 are reads past an end that only a sanitizer sees. No tool has tried the rest.",
     "Fuzzing: the nightly run gives each target a minute by default (`FUZZ_SECONDS`). Longer runs are recorded by hand: on "
     "26 November 2026, tga (2.5 million inputs), bmp (0.5), raw (4.8), grid (3.2: HGT, ESRI grids, BIL), gltf (0.2: JSON, "
     "GLB, data URIs, extensions) and meshopt (3.4) had 20 minutes each on a busy machine, without a finding.",
