@@ -97,7 +97,9 @@ struct WindowSums {
     }
 };
 
-// Calls what(first, count) for each run of texels of a window's row without background in them and beside them.
+// Calls what(first, count) for each run of texels of a window's row without background in them and beside them. Runs
+// start at multiples of kRunStep, so that a row that starts there may be read as far as the whole row may be.
+constexpr int kRunStep = 16;  // floats: 64 bytes, see add_level_row()
 template <class What>
 void each_clean_run(const Plane<float>* background, const Rect& window, int j, What&& what) {
     if (background == nullptr) return what(0, window.width);
@@ -111,7 +113,7 @@ void each_clean_run(const Plane<float>* background, const Rect& window, int j, W
         return true;
     };
     for (int i = 0; i < window.width; ++i) {
-        const int first = i;
+        const int first = (i + kRunStep - 1) / kRunStep * kRunStep;
         while (i < window.width && is_clean(window.x + i)) ++i;
         if (i > first) what(first, i - first);
     }
