@@ -55,7 +55,7 @@ Result<std::vector<std::byte>> make_texture(const Execution& execution, Extent e
     return encode_file(*texture, Container::ktx2);
 }
 
-// Runs bodies on three threads of its own, the last one first.
+// Runs the bodies on three threads, the last body first.
 void run_backwards(int count, const std::function<void(int)>& body) {
     std::atomic<int> next{count - 1};
     std::vector<std::thread> threads;

@@ -156,7 +156,7 @@ TEST(DocumentedFailures, OfFiles) {
     });
 }
 
-// What fails without an error of its own: the report says it.
+// Failures that the function reports in its result instead of an error.
 TEST(DocumentedFailures, OfFilesThatAreChecked) {
     const auto missing = check_file("none.png");
     ASSERT_TRUE(missing);
