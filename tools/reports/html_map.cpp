@@ -3,6 +3,7 @@
 #include "reports/html_map.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <tex/file.h>
@@ -20,8 +21,13 @@ constexpr int kSmallLevel = 64;
 
 int longest(Extent extent) { return std::max(extent.width, extent.height); }
 
-// True for the BC formats of normal maps, which the page decodes. Maps in EAC and ASTC are shown as pictures.
-bool is_packed(Format format) { return format <= Format::bc5_snorm && format_info(format).channels > 1; }
+// What report_blocks.js decodes. Maps in EAC and ASTC are shown as pictures.
+constexpr Format kDecodedInThePage[] = {Format::bc1_unorm, Format::bc2_unorm, Format::bc3_unorm, Format::bc5_unorm,
+                                        Format::bc5_snorm};
+
+bool is_packed(Format format) {
+    return std::find(std::begin(kDecodedInThePage), std::end(kDecodedInThePage), format) != std::end(kDecodedInThePage);
+}
 
 struct View {
     Show show;
@@ -42,79 +48,96 @@ constexpr View kViews[] = {
     {Show::uv, "UVs", "the outlines of the mesh's triangles over the map; mirrored ones in orange"},
 };
 
-Result<HtmlPicture> draw(const HtmlMap& map, const TangentSpace* mesh, Show show, int size, const std::string& caption,
-                         const char* alt, const Execution& execution) {
-    PreviewScene scene;
-    scene.map = &map.chain;
-    scene.mesh = mesh;
-    scene.map_without_z = map.without_z();
+// All levels of a texture, with green as `y` says. Lengths are kept, so that errors stay visible.
+Result<MipChain> all_levels(const Texture& texture, const Swizzle& swizzle, YAxis y, const Execution& execution) {
+    UnpackOptions options;
+    options.swizzle = swizzle;
+    options.y_axis = y;
+    options.keep_length = true;
+    auto chain = unpack(texture, options, execution);
+    if (!chain || chain->levels.size() > 1) return chain;
+    return build_mip_chain(std::move(chain->levels.front()), {}, execution);
+}
+
+// What the pictures of one map are drawn from.
+struct Drawing {
+    HtmlMap& map;
+    const MapOnMesh* mesh;       // may be null
+    const MipChain& mesh_chain;  // the map as the mesh has it: green may point the other way than in the map's pictures
+    const HtmlSizes& sizes;
+    const Execution& execution;
+};
+
+Result<HtmlPicture> draw(const Drawing& from, const PreviewScene& scene, Show show, int size, std::string caption,
+                         const char* alt) {
     PreviewOptions options;
     options.show = show;
     options.size = {size, 0};
-    const auto picture = preview(scene, options, execution);
+    const auto picture = preview(scene, options, from.execution);
     if (!picture) return picture.error();
-    return html_picture(*picture, caption, alt);
+    return html_picture(*picture, std::move(caption), alt);
 }
 
-void flip_y(MipChain& chain) {
-    for (NormalMap& level : chain.levels) {
-        for (int j = 0; j < level.extent().height; ++j) {
-            float* const row = level.y.row(j);
-            for (int i = 0; i < level.extent().width; ++i) row[i] = -row[i];
-        }
-    }
+Result<HtmlPicture> draw_flat(const Drawing& from, Show show, int size, std::string caption, const char* alt) {
+    PreviewScene scene;
+    scene.map = &from.map.chain;
+    scene.map_without_z = from.map.without_z();
+    return draw(from, scene, show, size, std::move(caption), alt);
 }
 
-// Draws a picture with the mesh, on which green points as there, whatever the map's own pictures show.
-Result<HtmlPicture> draw_on_mesh(HtmlMap& map, const MapOnMesh& mesh, Show show, int size, const char* caption,
-                                 const char* alt, const Execution& execution) {
-    if (mesh.y != map.y) flip_y(map.chain);
-    auto drawn = draw(map, &mesh.space, show, size, caption, alt, execution);
-    if (mesh.y != map.y) flip_y(map.chain);
-    return drawn;
+Result<HtmlPicture> draw_on_mesh(const Drawing& from, Show show, int size, const char* caption, const char* alt) {
+    PreviewScene scene;
+    scene.map = &from.mesh_chain;
+    scene.map_without_z = from.map.without_z();
+    scene.mesh = &from.mesh->space;
+    return draw(from, scene, show, size, caption, alt);
 }
 
-Result<void> add_view(HtmlMap& map, const View& view, const MapOnMesh* mesh, const HtmlSizes& sizes,
-                      const Execution& execution) {
+Result<void> add_view(const Drawing& from, const View& view) {
     std::string caption = view.caption;
-    if (view.show == Show::curl && map.y == YAxis::down) caption += ", with green read as down";
+    if (view.show == Show::curl && from.map.y == YAxis::down) caption += ", with green read as down";
     const bool is_wide = view.show == Show::mips || view.show == Show::seams;
-    const int size = (is_wide ? 2 : 1) * sizes.view;
-    auto drawn = needs_mesh(view.show) ? draw_on_mesh(map, *mesh, view.show, size, view.caption, view.alt, execution)
-                                       : draw(map, nullptr, view.show, size, caption, view.alt, execution);
+    const int size = (is_wide ? 2 : 1) * from.sizes.view;
+    auto drawn = needs_mesh(view.show) ? draw_on_mesh(from, view.show, size, view.caption, view.alt)
+                                       : draw_flat(from, view.show, size, std::move(caption), view.alt);
     if (!drawn) return drawn.error();
-    map.views.push_back(std::move(*drawn));
+    from.map.views.push_back(std::move(*drawn));
     return {};
 }
 
-Result<void> add_mesh(HtmlMap& map, const MapOnMesh& mesh, const HtmlSizes& sizes, const Execution& execution) {
-    auto still = draw_on_mesh(map, mesh, Show::lit, sizes.lit, "on the mesh",
-                              "the mesh with the map, lit from the upper left", execution);
+Result<void> add_mesh(const Drawing& from) {
+    auto still =
+        draw_on_mesh(from, Show::lit, from.sizes.lit, "on the mesh", "the mesh with the map, lit from the upper left");
     if (!still) return still.error();
-    map.on_mesh = HtmlOnMesh{std::move(*still), html_mesh(mesh.space, mesh.arguments), mesh.space.part.triangles(),
-                             mesh.y, mesh.map};
+    const MapOnMesh& mesh = *from.mesh;
+    from.map.on_mesh = HtmlOnMesh{std::move(*still), html_mesh(mesh.space, mesh.arguments), mesh.space.part.triangles(),
+                                  mesh.y, mesh.map};
     return {};
 }
 
-Result<void> draw_pictures(HtmlMap& map, const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution) {
+bool applies(const Drawing& from, const View& view) {
+    if (view.needs_z && from.map.without_z()) return false;
+    if (view.show == Show::mips && from.map.stored_levels == 1) return false;
+    if (needs_mesh(view.show) && from.mesh == nullptr) return false;
+    return view.show != Show::seams || from.mesh->has_seams;
+}
+
+Result<void> draw_pictures(const Drawing& from) {
     constexpr const char* kLit = "lit from the upper left";
-    auto thumbnail = draw(map, nullptr, Show::lit, sizes.thumbnail, kLit, kLit, execution);
+    auto thumbnail = draw_flat(from, Show::lit, from.sizes.thumbnail, kLit, kLit);
     if (!thumbnail) return thumbnail.error();
-    map.thumbnail = std::move(*thumbnail);
-    if (sizes.lit == 0) return {};
-    auto lit = draw(map, nullptr, Show::lit, sizes.lit, kLit, kLit, execution);
+    from.map.thumbnail = std::move(*thumbnail);
+    if (from.sizes.lit == 0) return {};
+    auto lit = draw_flat(from, Show::lit, from.sizes.lit, kLit, kLit);
     if (!lit) return lit.error();
-    map.lit = std::move(*lit);
-    if (sizes.view == 0) return {};
-    if (mesh != nullptr) {
-        if (auto added = add_mesh(map, *mesh, sizes, execution); !added) return added;
+    from.map.lit = std::move(*lit);
+    if (from.sizes.view == 0) return {};
+    if (from.mesh != nullptr) {
+        if (auto added = add_mesh(from); !added) return added;
     }
     for (const View& view : kViews) {
-        if (view.needs_z && map.without_z()) continue;
-        if (view.show == Show::mips && map.stored_levels == 1) continue;
-        if (needs_mesh(view.show) && mesh == nullptr) continue;
-        if (view.show == Show::seams && !mesh->has_seams) continue;
-        if (auto added = add_view(map, view, mesh, sizes, execution); !added) return added;
+        if (!applies(from, view)) continue;
+        if (auto added = add_view(from, view); !added) return added;
     }
     return {};
 }
@@ -223,19 +246,17 @@ Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, c
     map.extent = texture.extent();
     map.stored_levels = static_cast<int>(texture.levels.size());
 
-    UnpackOptions options;
-    options.swizzle = swizzle;
-    options.y_axis = y;
-    options.keep_length = true;  // so that errors stay visible
-    auto chain = unpack(texture, options, execution);
+    auto chain = all_levels(texture, swizzle, y, execution);
     if (!chain) return chain.error();
     map.chain = std::move(*chain);
-    if (map.chain.levels.size() == 1) {
-        auto built = build_mip_chain(std::move(map.chain.levels.front()), {}, execution);
-        if (!built) return built.error();
-        map.chain = std::move(*built);
+    MipChain turned;
+    if (mesh != nullptr && mesh->y != y) {
+        auto other = all_levels(texture, swizzle, mesh->y, execution);
+        if (!other) return other.error();
+        turned = std::move(*other);
     }
-    if (const auto drawn = draw_pictures(map, mesh, sizes, execution); !drawn) return drawn.error();
+    const MipChain& mesh_chain = turned.levels.empty() ? map.chain : turned;
+    if (const auto drawn = draw_pictures({map, mesh, mesh_chain, sizes, execution}); !drawn) return drawn.error();
 
     // A mesh needs smaller levels, and those of packed maps cannot be made in the page.
     const bool needs_levels = mesh != nullptr && map.stored_levels == 1;
