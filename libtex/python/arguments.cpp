@@ -139,35 +139,25 @@ Fade Convert<Fade>::from(py::handle given, std::string_view name) {
 
 std::string Convert<Fade>::shown(Fade value) { return fmt::format("({}, {})", value.first, value.last); }
 
-namespace {
-
-struct OtherName {
-    const char* name;
-    bool OtherPlanes::*has;
-};
-constexpr OtherName kOtherNames[] = {
-    {"blue", &OtherPlanes::blue}, {"alpha", &OtherPlanes::alpha}, {"length", &OtherPlanes::length}};
-
-}  // namespace
+const OtherName& other_from(std::string_view word, std::string_view name) {
+    const auto* const row = std::find_if(std::begin(kOtherNames), std::end(kOtherNames),
+                                         [&word](const OtherName& other) { return word == other.name; });
+    need(row != std::end(kOtherNames), name, shown_text(word) + " must be one of 'blue', 'alpha', 'length'");
+    return *row;
+}
 
 OtherPlanes Convert<OtherPlanes>::from(py::handle given, std::string_view name) {
     constexpr std::string_view kWanted = "a sequence of 'blue', 'alpha' and 'length'";
     if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) raise_type(name, kWanted, given);
     OtherPlanes planes;
-    for (const py::handle item : given) {
-        const std::string word = text_from(item, name);
-        const auto* const row = std::find_if(std::begin(kOtherNames), std::end(kOtherNames),
-                                             [&word](const OtherName& other) { return word == other.name; });
-        need(row != std::end(kOtherNames), name, shown_text(word) + " must be one of 'blue', 'alpha', 'length'");
-        planes.*row->has = true;
-    }
+    for (const py::handle item : given) planes.*other_from(text_from(item, name), name).has = true;
     return planes;
 }
 
 std::string Convert<OtherPlanes>::shown(OtherPlanes value) {
     std::string names;
-    for (const auto& [name, has] : kOtherNames) {
-        if (value.*has) names += (names.empty() ? "" : ", ") + shown_text(name);
+    for (const OtherName& other : kOtherNames) {
+        if (value.*other.has) names += (names.empty() ? "" : ", ") + shown_text(other.name);
     }
     return "[" + names + "]";
 }

@@ -211,6 +211,21 @@ struct Convert<Swizzle> {
     static std::string type() { return "str"; }
 };
 
+// The data beside normals: attributes of a tex.NormalMap, keys of dicts, words of `keep`.
+struct OtherName {
+    const char* name;
+    Plane<float> NormalMap::*plane;
+    bool OtherPlanes::*has;
+    std::optional<OtherData> OtherInputs::*input;
+};
+inline constexpr OtherName kOtherNames[] = {
+    {"blue", &NormalMap::blue, &OtherPlanes::blue, &OtherInputs::blue},
+    {"alpha", &NormalMap::alpha, &OtherPlanes::alpha, &OtherInputs::alpha},
+    {"length", &NormalMap::length, &OtherPlanes::length, &OtherInputs::length}};
+
+// The place with that name. Raises ValueError for others.
+[[nodiscard]] const OtherName& other_from(std::string_view word, std::string_view name);
+
 // The names of planes: ["alpha"]
 template <>
 struct Convert<OtherPlanes> {

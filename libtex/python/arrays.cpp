@@ -181,8 +181,9 @@ py::array normals_of(NormalMap map) {
 
 py::array array_of(NormalMap map) {
     py::dict others;
-    for (const auto& [name, plane] : kOtherAttributes) {
-        if (!(map.*plane).empty()) others[name] = array_of(std::move(map.*plane));
+    for (const OtherName& other : kOtherNames) {
+        Plane<float>& plane = map.*other.plane;
+        if (!plane.empty()) others[other.name] = array_of(std::move(plane));
     }
     py::array normals = normals_of(std::move(map));
     if (others.empty()) return normals;
@@ -255,12 +256,12 @@ Plane<float> kept_plane_from(const py::object& from, const std::string& name, Sh
 
 void add_others(py::handle from, std::string_view name, Sharing sharing, NormalMap& map) {
     if (!py::isinstance<py::array>(from) || !py::isinstance(from, normal_map_class())) return;
-    for (const auto& [attribute, plane] : kOtherAttributes) {
-        const py::object given = from.attr(attribute);
+    for (const OtherName& other : kOtherNames) {
+        const py::object given = from.attr(other.name);
         if (given.is_none()) continue;
-        const std::string full = fmt::format("{}.{}", name, attribute);
-        map.*plane = kept_plane_from(given, full, sharing);
-        need_equal((map.*plane).extent(), map.extent(), full);
+        const std::string full = fmt::format("{}.{}", name, other.name);
+        map.*other.plane = kept_plane_from(given, full, sharing);
+        need_equal((map.*other.plane).extent(), map.extent(), full);
     }
 }
 

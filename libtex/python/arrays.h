@@ -45,14 +45,6 @@ inline constexpr const char* kArrayMethod = "(self, dtype: Any = None, copy: boo
 // An array over a plane that `owner` keeps alive.
 [[nodiscard]] py::array view_of(PlaneView<float> plane, py::handle owner);
 
-// What is beside the normals of a tex.NormalMap: its planes, by the names of its attributes.
-struct OtherAttribute {
-    const char* name;
-    Plane<float> NormalMap::*plane;
-};
-inline constexpr OtherAttribute kOtherAttributes[] = {
-    {"blue", &NormalMap::blue}, {"alpha", &NormalMap::alpha}, {"length", &NormalMap::length}};
-
 // A plane of an array (height, width). If it is shared, `from` must outlive it. `finite`: checked.
 [[nodiscard]] Plane<float> plane_from(py::handle from, std::string_view name, bool finite = true);
 

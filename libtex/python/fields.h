@@ -42,8 +42,9 @@ void each_field(HeightOptions& o, F& f) {
     f("wrap", axes(o.wrap_x, o.wrap_y));
 }
 
+// The options of mip levels, but for those about data beside the normals.
 template <class F>
-void each_field(MipOptions& o, F& f) {
+void level_fields(MipOptions& o, F& f) {
     f("levels", o.levels);
     f("filter", o.filter);
     f("domain", o.domain);
@@ -51,6 +52,11 @@ void each_field(MipOptions& o, F& f) {
     f("wrap", axes(o.wrap_x, o.wrap_y));
     f("max_side", o.max_side);
     f("any_z", o.any_z);
+}
+
+template <class F>
+void each_field(MipOptions& o, F& f) {
+    level_fields(o, f);
     f("blue", o.blue);
     f("alpha", o.alpha);
     f("roughness", o.roughness);

@@ -67,18 +67,11 @@ py::object compared(Call& call, Running& running) {
     return result;
 }
 
-// Without the fields about data beside the normals.
 struct RoughnessKeywords : MipOptions {};
 
 template <class F>
 void each_field(RoughnessKeywords& o, F& f) {
-    f("levels", o.levels);
-    f("filter", o.filter);
-    f("domain", o.domain);
-    f("fade", o.fade);
-    f("wrap", axes(o.wrap_x, o.wrap_y));
-    f("max_side", o.max_side);
-    f("any_z", o.any_z);
+    level_fields(o, f);
 }
 
 void add_roughness(Module& module) {

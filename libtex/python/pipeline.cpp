@@ -61,8 +61,7 @@ OtherInputs others_from(py::handle given, bool has_heights) {
     for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
         const std::string place = text_from(key, "others");
         const std::string name = fmt::format("others['{}']", place);
-        need(place == "blue" || place == "alpha" || place == "length", name, "there are 'blue', 'alpha', 'length'");
-        OtherData& data = (place == "blue" ? inputs.blue : place == "alpha" ? inputs.alpha : inputs.length).emplace();
+        OtherData& data = (inputs.*other_from(place, "others").input).emplace();
         if (py::isinstance<py::str>(value)) {
             need(has_heights && text_from(value, name) == "heights", name,
                  has_heights ? "the word is 'heights'" : "must be a number or an array");
@@ -236,8 +235,7 @@ constexpr const char* kNotes =
     "The extension of `output` decides the file type, unless `container` does. Structures are dicts with the names of "
     "their fields: mip={'filter': 'kaiser'}. Without pack={'encoding': ...}, the file gets its default_encoding(). "
     "`others` is a dict of data that go into 'blue', 'alpha' or 'length': an array (height, width), a number from 0 to "
-    "1, "
-    "or, of bake_file(), 'heights'. "
+    "1, or, of bake_file(), 'heights'. "
     "Returns a dict of facts about the result. Several outputs, one file for each level, and roughness maps: use "
     "run().";
 
