@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""command_threads.py: how much faster each command is on several threads than on one.
+"""command_threads.py: how long each command takes on 1, 2, 4 ... threads.
 
     tests/bench/command_threads.py [BUILD [SIDE [ROUNDS]]]    default: build/release 4096 5
 
-Each command reads a map of SIDE x SIDE texels and runs in turn on one thread and on all processors. Prints the medians
-of the wall-clock times, and the median of the ratio within a round. Needs numpy.
+Each command reads a map of SIDE x SIDE texels and runs in turn on 1, 2, 4 ... and all processors. Prints the medians of
+the wall-clock times, and the median of the ratio of one thread to all within a round. Needs numpy.
 """
 
 import os
@@ -51,21 +51,30 @@ COMMANDS = [
     "bake-normals h.png -o o.dds --effort fast",
     "bake-normals h.png -o o.png",
     "bake-normals h.exr -o o.dds",
+    "bake-normals h.r16 -o o.dds",
+    "bake-normals h.r16 -o o.ktx2 --format astc-6x6",
+    "bake-normals h.r16 -o o.dds --effort best",
+    "bake-normals h.r16 -o o.dds --blur 2",
     "bake-normals h.png -o o.exr",
     "bake-normals h.png -o o.ktx2 --format bc5 --supercompress zstd",
     "bake-normals h.png -o o.ktx2 --format eac-rg11",
     "mip-normals n.png -o o.dds",
+    "mip-normals n.dds -o o.dds",
+    "mip-normals n.dds -o o.dds --mip-filter kaiser",
     "pack-normals n.exr -o o.dds",
     "unpack-normals n.dds -o o.png",
     "unpack-normals n.dds -o o.exr",
     "scale-normals n.png --scale 2 -o o.png",
     "blend-normals n.png n2.png -o o.dds",
+    "blend-normals n.dds n.dds -o o.dds",
     "check-normals n.dds",
     "check-normals n.png",
     "compare-normals n.dds n.png",
     "preview-normals n.dds -o o.png --size SIDE",
     "integrate-normals n.png -o o.png",
     "integrate-normals n.png -o o.exr --wrap clamp",
+    "transfer-normals low.glb high.glb -o o.dds --extent SIDE",
+    "transfer-normals low.glb high.glb -o o.dds --extent SIDE --height-out t.exr",
 ]
 
 
@@ -82,23 +91,30 @@ def main():
     build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build/release").resolve()
     side, rounds = (int(sys.argv[k]) if len(sys.argv) > k else default for k, default in ((2, 4096), (3, 5)))
     processors = len(os.sched_getaffinity(0))
+    counts = sorted({2**k for k in range(10) if 2**k < processors} | {processors})
     os.environ["PATH"] = f"{build}:{os.environ['PATH']}"
+    models = pathlib.Path(__file__).resolve().parents[2] / "samples"
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        write_png(pathlib.Path("h.png"), hills(side))
+        heights = hills(side)
+        write_png(pathlib.Path("h.png"), heights)
+        pathlib.Path("h.r16").write_bytes(np.round(heights * 65535).astype("<u2").tobytes())
+        for mesh in ("low", "high"):
+            os.symlink(models / f"crate_{mesh}.glb", f"{mesh}.glb")
         for made in ("n.png", "n.exr", "n.dds"):
             subprocess.run(["bake-normals", "h.png", "--bumpiness", "16", "-o", made, "--no-sync"], check=True)
         subprocess.run(["scale-normals", "n.png", "--scale", "0.5", "-o", "n2.png", "--no-sync"], check=True)
         subprocess.run(["integrate-normals", "n.png", "-o", "h.exr", "--format", "half", "--no-sync"], check=True)
-        print(f"| {side}x{side} | 1 thread, s | {processors} threads, s | ratio |\n|---|---|---|---|")
+        print(f"| {side}x{side} | " + " | ".join(f"{n}" for n in counts) + " | times |")
+        print("|---" * (len(counts) + 2) + "|")
         for command in COMMANDS:
             command = command.replace("SIDE", str(side))
             if " -o " in command:
                 command += " --no-sync"
-            pairs = [(seconds(command, 1), seconds(command, processors)) for _ in range(rounds)]
-            one, all_threads = (statistics.median(times) for times in zip(*pairs))
-            ratio = statistics.median(b / a for a, b in pairs)
-            print(f"| `{command.removesuffix(' --no-sync')}` | {one:.2f} | {all_threads:.2f} | {ratio:.2f} |", flush=True)
+            runs = [[seconds(command, n) for n in counts] for _ in range(rounds)]
+            medians = " | ".join(f"{statistics.median(times):.2f}" for times in zip(*runs))
+            times = statistics.median(run[0] / run[-1] for run in runs)
+            print(f"| `{command.removesuffix(' --no-sync')}` | {medians} | {times:.1f} |", flush=True)
 
 
 if __name__ == "__main__":
