@@ -80,6 +80,12 @@ bool can_compress(Container container) { return codec_of(container).compress != 
 
 Encoding default_encoding(Container container) { return codec_of(container).default_encoding; }
 
+Result<void> validate(const WriteOptions& options) {
+    if (options.zstd < 0 || options.zstd > kHighestZstdLevel) return bad_option("zstd: must be from 0 to 22");
+    if (options.jpeg_quality < 1 || options.jpeg_quality > 100) return bad_option("jpeg_quality: must be from 1 to 100");
+    return {};
+}
+
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,
                                            const Execution& execution) {
     return guarded([&]() -> Result<std::vector<std::byte>> {

@@ -77,10 +77,16 @@ Result<Strength> strength_from_uv(Extent extent, double r) {
     return Strength{strength, strength};
 }
 
+Result<void> validate(const HeightOptions& options) {
+    constexpr float kMaxBlurSigma = 256.0f;
+    if (options.blur_sigma >= 0.0f && options.blur_sigma <= kMaxBlurSigma) return {};
+    return bad_option("blur_sigma: must be from 0 to 256");
+}
+
 Result<PictureHeights> height_field(const Image& image, const HeightOptions& options, const Execution& execution) {
     return guarded(execution, [&]() -> Result<PictureHeights> {
         if (auto usable = check_usable(image); !usable) return usable.error();
-        if (std::optional<Error> wrong = check_blur(options)) return std::move(*wrong);
+        if (auto valid = validate(options); !valid) return valid.error();
         const PictureFacts facts = facts_of(image);
         const Result<HeightSource> source = find_height_source(facts, options);
         if (!source) return source.error();

@@ -245,12 +245,16 @@ Result<Texture> show(const Job& job) {
 
 }  // namespace
 
+Result<void> validate(const PreviewOptions& options) {
+    if (auto sound = check_light(options); !sound) return sound;
+    return check_geometry(options);
+}
+
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {
     return guarded(execution, [&]() -> Result<Texture> {
         if (scene.map == nullptr) return bad("there is no map to show");
         if (auto usable = check_usable(*scene.map); !usable) return usable.error();
-        if (const auto sound = check_light(options); !sound) return sound.error();
-        if (const auto sound = check_geometry(options); !sound) return sound.error();
+        if (auto valid = validate(options); !valid) return valid.error();
         if (!(scene.white > 0.0f) || !finite({scene.white})) return bad("the height of white must be above 0");
         const Extent map = scene.map->levels.front().extent();
         if (scene.mesh == nullptr) {

@@ -180,6 +180,9 @@ struct WriteOptions {
     std::function<void(const std::string& path)> replaced = {};
 };
 
+// Whether every option is in its range. Errors: bad_option, which names the option.
+[[nodiscard]] TEX_API Result<void> validate(const WriteOptions& options);
+
 // The bytes of a file that holds `texture`. DDS and KTX2 hold all levels, and so does EXR if there is more than one;
 // other pictures hold the base level. If a container lacks a format with three channels, the format is widened with
 // A = 1 (rgb16, half and float in DDS and KTX2). The bytes contain no time, host or path: equal textures give equal
@@ -192,7 +195,7 @@ struct WriteOptions {
 // believes them.
 //
 // Errors: unsupported  the container cannot hold the format (the reason says what it can hold), or zstd
-//         bad_option   zstd is not from 0 to 22, or jpeg_quality not from 1 to 100; the texture has no level, or one
+//         bad_option   as validate(options); the texture has no level, or one
 //                      without the extent of level_extent() or level_bytes() bytes
 //         io           the reader process cannot be started
 //         bad_data     the reader process crashed or did not end in time

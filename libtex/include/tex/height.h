@@ -109,6 +109,9 @@ struct HeightOptions {
     Wrap wrap_y = Wrap::repeat;
 };
 
+// Whether every option is in its range. Errors: bad_option, which names the option.
+[[nodiscard]] TEX_API Result<void> validate(const HeightOptions& options);
+
 // What height_field() found, for warnings and reports.
 struct HeightReport {
     std::int64_t luma_texels = 0;     // texels for which `automatic` used luma because R, G, B differ
@@ -138,7 +141,7 @@ struct PictureHeights : HeightField {
 // texels tell deband() nothing about the heights.
 //
 // Errors: bad_option  the picture lacks the channel (the reason lists its channels), or has not the 8 bits that
-//                     terrain_rgb, terrarium and rg16 need; blur_sigma out of range
+//                     terrain_rgb, terrarium and rg16 need; as validate(options)
 //         bad_data    invalid texels without fill_invalid (the reason names the column and row of the first texel, and
 //                     the count); or no valid texel at all
 //         out_of_memory, cancelled

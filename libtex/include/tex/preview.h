@@ -211,6 +211,9 @@ struct PreviewOptions {
     bool legend = true;  // below false colours and mips; makes the picture higher
 };
 
+// Whether every option is in its range. Errors: bad_option, which names the option.
+[[nodiscard]] TEX_API Result<void> validate(const PreviewOptions& options);
+
 // What is rendered. The chains must outlive the call. Precondition: `map` has a level; levels have the extents of
 // level_extent().
 struct PreviewScene {
@@ -258,9 +261,8 @@ struct PreviewScene {
 //                         parts, with the error at their middles. Of more than 2^14 edges, as many, evenly spread.
 //   triangles of `uv`     repeat with the map, if they leave it. If several cover a pixel, the first is shown.
 //
-// Preconditions (asserted): check_part(scene.mesh->part) succeeds.
 // Errors: bad_option   the show is height but there is no height map; the albedo has neither R, G and B nor one plane;
-//                      an option is outside the range stated beside it; the show is tangents, uv or seams but there is
+//                      as validate(options); the show is tangents, uv or seams but there is
 //                      no mesh; the mesh has no normals, no such set of UVs, not as many tangents as corners
 //         unsupported  triangles of a mesh hide each other more than 1024 deep, on average; UVs of `uv` are beyond a
 //                      million, or triangles more than 16 repeats of the map long, or more than 4 on average

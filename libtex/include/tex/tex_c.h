@@ -341,11 +341,11 @@ enum tex_range { TEX_RANGE_SIGNED = 0, TEX_RANGE_UNSIGNED = 1 };
 
 typedef struct tex_unpack_options {
     uint32_t size;
-    uint8_t
-        swizzle[4];     // tex_component of R, G, B, A; all 0: x, y, z in R, G, B, or x and y in formats of two channels
-    int32_t y_axis;     // tex_y_axis of the texels
-    int32_t range;      // tex_range of floats: the components themselves, or (n + 1) / 2. Integers do not read it.
-    int32_t snap_flat;  // 1: 8-bit unorm values from 127/255 to 128/255 are 0
+    // tex_component of R, G, B, A. All 0: x, y and z in R, G and B, or x and y in formats of two channels.
+    uint8_t swizzle[4];
+    int32_t y_axis;        // tex_y_axis of the texels
+    int32_t range;         // tex_range of floats: the components themselves, or (n + 1) / 2. Integers do not read it.
+    int32_t snap_flat;     // 1: 8-bit unorm values from 127/255 to 128/255 are 0
     int32_t keep_length;   // 1: vectors are not normalised
     int32_t keep_invalid;  // 1: vectors that are not finite become NaN, not (0, 0, 1)
 } tex_unpack_options;

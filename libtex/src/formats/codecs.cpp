@@ -143,8 +143,7 @@ const Codec& codec_of(Container container) {
 }
 
 Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options) {
-    if (options.zstd < 0 || options.zstd > kHighestZstdLevel)
-        return Error{ErrorCode::bad_option, {}, "zstd must be from 0 to " + std::to_string(kHighestZstdLevel)};
+    if (auto valid = validate(options); !valid) return valid;
     if (options.zstd > 0 && codec.compress == nullptr) {
         return Error{ErrorCode::unsupported,
                      {},

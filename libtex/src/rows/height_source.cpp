@@ -15,9 +15,6 @@
 namespace tex::inline v1 {
 namespace {
 
-// The greatest HeightOptions::blur_sigma.
-constexpr float kMaxBlurSigma = 256.0f;
-
 constexpr int kNoPlane = -1;
 
 using Names = std::vector<std::string>;
@@ -159,11 +156,6 @@ Result<HeightSource> find_height_source(const PictureFacts& facts, const HeightO
     if (source.plane != kNoPlane) return source;
     const bool is_automatic = channel == HeightChannel::automatic;
     return no_such_channel(names, is_automatic ? std::string_view() : name_of(kHeightChannelNames, channel));
-}
-
-std::optional<Error> check_blur(const HeightOptions& options) {
-    if (options.blur_sigma >= 0.0f && options.blur_sigma <= kMaxBlurSigma) return std::nullopt;
-    return Error{ErrorCode::bad_option, {}, "the blur's sigma must be from 0 to 256 texels"};
 }
 
 Result<HeightOptions> with_no_data(const HeightOptions& options, const PictureFacts& facts, const HeightSource& source,

@@ -37,9 +37,6 @@ struct HeightSource {
 // Finds the source among the picture's channels. Errors: bad_option.
 Result<HeightSource> find_height_source(const PictureFacts& facts, const HeightOptions& options);
 
-// Returns nullopt if the sigma of the blur is in range, or else the error (bad_option).
-std::optional<Error> check_blur(const HeightOptions& options);
-
 // What was found in rows of heights.
 struct HeightCounts {
     std::int64_t luma = 0;         // texels for which `automatic` took luma

@@ -25,7 +25,7 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
         if (!linear) return linear.error();
         heights.linear = std::move(*linear);
     }
-    if (std::optional<Error> wrong = check_blur(options.heights)) return std::move(*wrong);
+    if (auto valid = validate(options.heights); !valid) return valid.error();
     const PictureFacts facts{rows.names(), rows.sample(), rows.bits(),   rows.has_numbers(),
                              rows.scale(), rows.offset(), rows.no_data()};
     heights.stored = rows.has_numbers();

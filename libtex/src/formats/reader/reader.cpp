@@ -78,11 +78,9 @@ Result<InputFile> decode_with_reader(InputFile& file, const std::string& format,
 Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const WriteOptions& options) {
     const FormatInfo info = format_info(head.format);
     const Codec& codec = codec_of(container);
-    if (Result<void> held = check_holds(codec, head.format, {}); !held) return held.error();
+    if (Result<void> held = check_holds(codec, head.format, options); !held) return held.error();
     if (codec.reader_name == nullptr)
         return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
-    if (options.jpeg_quality < 1 || options.jpeg_quality > 100)
-        return Error{ErrorCode::bad_option, {}, "jpeg_quality must be from 1 to 100"};
     ReaderHeader header;
     header.quality = static_cast<std::uint32_t>(options.jpeg_quality);
     header.width = head.extent.width;
