@@ -116,7 +116,7 @@ void TransferReport::add(Command& command) {
         .text(path_, "--report", "FILE",
               "write a page with the map on the low mesh beside the high one, under a light that can be moved")
         .completes = Completes::files;
-    command.check([this, &command] {
+    command.check([&command] {
         if (command.given("--report") && command.given("--update"))
             throw UsageError("--report and --update contradict each other: what is skipped is not in the page");
     });

@@ -35,9 +35,9 @@ private:
 
     void make_ready(int task);
     void work();
-    [[nodiscard]] std::optional<int> next_task();
-    [[nodiscard]] std::optional<int> next_reading(bool in_order_only);
-    int pop(Line& line);
+    [[nodiscard]] Line* next_line();
+    [[nodiscard]] Line* next_reading(bool in_order_only);
+    int take(Line& line);
     void do_task(int task, std::unique_lock<std::mutex>& lock);
     void complete(int task, std::shared_ptr<Strip> strip);
     void report(std::unique_lock<std::mutex>& lock);
@@ -97,15 +97,8 @@ void FlowRun::make_ready(int task) {
     std::push_heap(line.ready.begin(), line.ready.end(), std::greater<>());
 }
 
-int FlowRun::pop(Line& line) {
-    std::pop_heap(line.ready.begin(), line.ready.end(), std::greater<>());
-    const int task = line.ready.back();
-    line.ready.pop_back();
-    return task;
-}
-
-// Of the stages that read, the one that is farthest behind.
-std::optional<int> FlowRun::next_reading(bool in_order_only) {
+// Of the stages that read, the one that is farthest behind. Null if none can.
+FlowRun::Line* FlowRun::next_reading(bool in_order_only) {
     Line* behind = nullptr;
     double least = std::numeric_limits<double>::infinity();
     for (Line& line : plan_.lines) {
@@ -115,31 +108,42 @@ std::optional<int> FlowRun::next_reading(bool in_order_only) {
         least = place;
         behind = &line;
     }
-    if (behind == nullptr) return std::nullopt;
+    return behind;
+}
+
+// The line whose first task is done next. Null if all tasks wait for others.
+FlowRun::Line* FlowRun::next_line() {
+    if (error_) return nullptr;
+    const bool reads_on = due_texels_ < most_due_;
+    if (threads_ > 1 && reads_on) {
+        if (Line* const reading = next_reading(true)) return reading;
+    }
+    for (auto line = plan_.lines.rbegin(); line != plan_.lines.rend(); ++line) {
+        if (!line->stage->reads() && !line->ready.empty()) return &*line;
+    }
+    return reads_on || busy_ == 0 ? next_reading(false) : nullptr;
+}
+
+int FlowRun::take(Line& line) {
+    std::pop_heap(line.ready.begin(), line.ready.end(), std::greater<>());
+    const int task = line.ready.back();
+    line.ready.pop_back();
+    ++busy_;
+    if (!line.stage->reads()) return task;
     ++reads_;
     for (; next_due_ < plan_.due.size() && plan_.due[next_due_].reads <= reads_; ++next_due_)
         due_texels_ += plan_.due[next_due_].texels;
-    return pop(*behind);
+    return task;
 }
 
-std::optional<int> FlowRun::next_task() {
-    if (error_) return std::nullopt;
-    const bool reads_on = due_texels_ < most_due_;
-    if (threads_ > 1 && reads_on) {
-        if (const std::optional<int> reading = next_reading(true)) return reading;
-    }
-    for (auto line = plan_.lines.rbegin(); line != plan_.lines.rend(); ++line) {
-        if (!line->stage->reads() && !line->ready.empty()) return pop(*line);
-    }
-    return reads_on || busy_ == 0 ? next_reading(false) : std::nullopt;
-}
-
-// Works until nothing is left. Waits while the remaining work depends on another thread.
+// Works until nothing is left. Waits while the remaining work depends on another thread. Whoever takes a task wakes one
+// more thread if there is another one, so that threads without work sleep: if rows can only be read in order, most do,
+// and waking all of them for each strip would disturb the one that reads.
 void FlowRun::work() {
     std::unique_lock lock(mutex_);
     while (true) {
-        if (const std::optional<int> task = next_task()) {
-            do_task(*task, lock);
+        if (Line* const line = next_line()) {
+            do_task(take(*line), lock);
         } else if (busy_ == 0) {
             changed_.notify_all();
             return;
@@ -154,8 +158,9 @@ void FlowRun::work() {
 void FlowRun::do_task(int task, std::unique_lock<std::mutex>& lock) {
     const Line& line = plan_.lines[plan_.line_of(task)];
     Stage& stage = *line.stage;
-    ++busy_;
+    const bool wakes = waiting_ > 0 && next_line() != nullptr;
     lock.unlock();
+    if (wakes) changed_.notify_one();
     std::shared_ptr<Strip> strip;
     const int first = line.row_of(task);
     const Result<void> done = guarded([&]() -> Result<void> {
@@ -191,7 +196,6 @@ void FlowRun::complete(int task, std::shared_ptr<Strip> strip) {
         const Line& owner = plan_.lines[plan_.line_of(used)];
         owner.stage->made_[static_cast<std::size_t>(used - owner.first)].reset();
     }
-    if (waiting_ > 0) changed_.notify_all();
 }
 
 void FlowRun::fail(double place, const Error& error) {
