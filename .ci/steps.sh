@@ -89,7 +89,7 @@ preset() {
 # The longest tests of the release, which the nightly run has: more instruction sets, pages with real models in a
 # browser, a statistic that sets thresholds.
 # shellcheck disable=SC2034  # used by the scripts that source this file
-longest='Matrix[.].*"(SSSE3|SSE4|AVX3|EMU128)"|CheckThresholds|ReportPage.LinksReachFilesAnywhereOnALongPage'
+longest='Matrix[.].*"(SSSE3|SSE4|AVX3|AVX3_DL|EMU128)"|CheckThresholds|ReportPage.LinksReachFilesAnywhereOnALongPage'
 longest+='|ReportMesh.DrawsModelsOfOthers|ReportMesh.LightsAMirroredMeshAsPreviewNormalsDoes'
 
 # Tests that judge real maps, exhaustive searches, and the longest comparisons of whole runs: their results are the same

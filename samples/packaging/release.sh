@@ -4,8 +4,8 @@
 # a clean clone, in FOLDER (by default build/release-VERSION):
 #
 #     libtex-VERSION.tar.gz        the sources; the same bytes wherever it is made
-#     *.deb, tex-*.whl             the packages, built from that archive, not from the clone
-#     libtex-*.tar.xz              portable archives, if samples/packaging/portable.sh is there
+#     *.deb                        the Debian packages, built from that archive, not from the clone
+#     libtex-*.tar.xz, tex-*.whl   the archive for every Linux and the wheel, by portable.sh
 #     libtex-VERSION.abi           the binary interface of libtex.so, if abidw (abigail-tools) is installed
 #     libtex-VERSION.spdx.json     what it is made of (SPDX 2.3)
 #     SHA256SUMS                   of all of these
@@ -56,8 +56,8 @@ if [ "$source_only" = no ]; then
     cmake --build --preset debian
     (cd build/debian && cpack -B "$work/packages" >"$work/log") || { cat "$work/log"; exit 1; }
     mv "$work"/packages/*.deb "$work/made"
-    TEX_BUILD=$PWD/build/debian python3 -m pip wheel --no-deps --wheel-dir "$work/made" libtex/python
-    if [ -x samples/packaging/portable.sh ]; then samples/packaging/portable.sh "$work/made"; fi
+    samples/packaging/portable.sh --wheel
+    mv build/portable/libtex-*.tar.xz build/portable/tex-*.whl "$work/made"
     if command -v abidw >/dev/null; then
         abidw --headers-dir libtex/include --out-file "$work/made/libtex-$version.abi" build/debian/libtex.so
     fi
