@@ -89,10 +89,11 @@ refuses_other_names() {
 make_root() {
     local root=build/platforms/essential-$1
     if [ ! -e "$root/etc/debian_version" ]; then
-        rm -rf "$root"
+        rm -rf "$root" "$root.new"
         mkdir -p build/platforms
         # A mirror that stands still has an index of forky and sid that is past its date. It must be signed.
-        mmdebstrap --quiet --variant=essential --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root" "$mirror"
+        mmdebstrap --quiet --variant=essential --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root.new" \
+            "$mirror" && mv "$root.new" "$root"
     fi
 }
 # The outputs in a root, by a user without rights. Prints what portable_outputs.sh prints.
@@ -124,9 +125,9 @@ works_in() {
 wheel_works() {
     local root=build/platforms/python-bookworm wheel=$1
     if [ ! -e "$root/etc/debian_version" ]; then
-        rm -rf "$root"
+        rm -rf "$root" "$root.new"
         mmdebstrap --quiet --variant=apt --aptopt='APT::Install-Recommends "false"' \
-            --include=python3-numpy,python3-pip bookworm "$root" "$mirror" || return 1
+            --include=python3-numpy,python3-pip bookworm "$root.new" "$mirror" && mv "$root.new" "$root" || return 1
     fi
     printf '%s\n' 'import tex' 'tex.run("bake-normals", ["bricks.png", "-o", "a.tif"], check=True)' \
         'tex.run("pack-normals", ["a.tif", "-o", "a.dds"], check=True)' >"$scratch/use.py"
@@ -167,6 +168,8 @@ for release in "${releases[@]}"; do
     make_root "$release" || { echo "portable: the mirror does not have $release"; continue; }
     check "same bytes and a filtered reader on $release" works_in "$release"
 done
+check 'the action for GitHub' tests/portable_ci.sh action "$archive"
+check 'the container' tests/portable_ci.sh container "$archive"
 wheel=$(find build/portable -maxdepth 1 -name 'tex-*.whl' | head -n 1)
 if [ -n "$wheel" ]; then
     check 'the wheel states its floor' wheel_states_its_floor "$wheel"

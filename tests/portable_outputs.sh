@@ -28,6 +28,8 @@ done
     made tga bake-normals $heights --format rgb8 --container tga --bumpiness 6
     made exr bake-normals $heights --format half --container exr --mips all --kernel sobel5
     made astc bake-normals waves.png --format astc-6x6 --container ktx2
+    made astc-best bake-normals hemisphere.png --format astc-4x4 --container astc --effort best
+    made rdo bake-normals $heights --format bc5 --container ktx2 --rdo-mean 0.5
     made eac bake-normals waves.png --format eac-rg11 --container ktx2
 }
 maps="maps/bricks.png maps/dunes.png maps/hemisphere.png maps/waves.png"
