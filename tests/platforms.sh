@@ -26,11 +26,11 @@ if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
 fi
 
 make_root() {
-    rm -rf "$root"
+    rm -rf "$root" "$root.new"
     mkdir -p "$(dirname "$root")"
     # A mirror that stands still has an index of sid that is past its date. It must be signed all the same.
     mmdebstrap --quiet --variant=apt --include=ca-certificates,ccache,git \
-        --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root" "$mirror"
+        --aptopt='Acquire::Check-Valid-Until "false"' "$1" "$root.new" "$mirror" && mv "$root.new" "$root"
 }
 
 # Clones HEAD into the root, or brings the clone there up to date; files that are the same keep their times.
