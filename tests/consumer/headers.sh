@@ -3,7 +3,7 @@
 # headers.sh BUILD [all]: every header of the installation BUILD/stage compiles without another one before it and
 # without warnings: those of C++ with both compilers as C++20 and C++23, with and without exceptions and run-time types;
 # tex_c.h as C11, C17, C++11 and C++20. tex.h and tex_c.h are tried in every way, each other header in one, by turns;
-# with "all", in every way, which takes some minutes.
+# with "all", in every way, which takes some minutes. COMPILERS names others than g++ and clang++-14.
 set -euo pipefail
 build=$1
 what=${2:-}
@@ -16,8 +16,12 @@ fail() { echo "headers.sh: $*" >&2; exit 1; }
 include=$(dirname "$(find "$build/stage/" -path '*/tex/tex.h')")
 strict="-fsyntax-only -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Werror -I $(dirname "$include")"
 compilers=() c_compilers=()
-for name in g++ clang++-14; do if command -v "$name" >/dev/null; then compilers+=("$name"); fi; done
-for name in gcc clang-14; do if command -v "$name" >/dev/null; then c_compilers+=("$name"); fi; done
+for name in ${COMPILERS:-g++ clang++-14}; do
+    if command -v "$name" >/dev/null; then compilers+=("$name"); fi
+    c=${name/clang++/clang}
+    c=${c/g++/gcc}
+    if command -v "$c" >/dev/null; then c_compilers+=("$c"); fi
+done
 for list in "${#compilers[@]}" "${#c_compilers[@]}"; do [ "$list" -gt 0 ] || fail "there is no compiler"; done
 ways=()
 for standard in c++20 c++2b; do
