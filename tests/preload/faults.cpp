@@ -12,8 +12,8 @@
 //     TEX_FAULT_NO_TMPFILE=1   the file system has no nameless files
 //     TEX_FAULT_THREADS=N      only the first N threads can be started
 //
-// Calls that the C library makes for itself are not seen. Processes that the command starts have an empty environment:
-// they are left alone.
+// Calls that the C library makes for itself are not seen, and, of oneTBB 2022, not those of its allocator. Processes
+// that the command starts have an empty environment: they are left alone.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -23,12 +23,14 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <tbb/version.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdlib>
+#include <cstring>
 #include <type_traits>
 
 namespace {
@@ -111,6 +113,17 @@ bool fails() {
     }
     errno = plan().error;
     return true;
+}
+
+// oneTBB 2022 cannot stand an allocator without memory while the first arena starts:
+// threading_control::create_threading_control() (threading_control.cpp:215) takes the locks of all global controls,
+// cache_aligned_allocate() fails at line 223, and to throw, do_throw() (exception.cpp) asks
+// terminate_on_exception(), which takes one of these locks again and waits for ever in sched_yield(). A program
+// that holds nothing but an arena does the same. So the calls of its allocator do not fail there.
+bool waits_for_ever(const void* caller) {
+    Dl_info about{};
+    return TBB_VERSION_MAJOR >= 2022 && dladdr(caller, &about) != 0 && about.dli_fname != nullptr &&
+           strstr(about.dli_fname, "libtbbmalloc") != nullptr;
 }
 
 template <class... Arguments>
@@ -217,12 +230,14 @@ TEX_CALL(int, memfd_create, const char* name, unsigned flags) {
 TEX_CALL(int, pipe2, int* ends, int flags) { return static_cast<int>(call(SYS_pipe2, ends, flags)); }
 
 TEX_CALL(void*, mmap, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED
-                   : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return !waits_for_ever(__builtin_return_address(0)) && fails()
+               ? MAP_FAILED
+               : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 TEX_CALL(void*, mmap64, void* at, size_t size, int protection, int flags, int fd, off_t offset) {
-    return fails() ? MAP_FAILED
-                   : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
+    return !waits_for_ever(__builtin_return_address(0)) && fails()
+               ? MAP_FAILED
+               : reinterpret_cast<void*>(wide_syscall(SYS_mmap, at, size, protection, flags, fd, offset));
 }
 
 TEX_CALL(int, posix_spawn, pid_t* child, const char* path, const posix_spawn_file_actions_t* actions,
