@@ -20,7 +20,7 @@ JUDGES = [
     ("files: DDS, PNG, EXR, TGA, BMP, TIFF and others", "OpenImageIO, libpng, OpenEXR, ImageMagick"),
     ("KTX2", "Khronos' validator and three.js, by hand (`tests/ktx.sh`, `tests/browser/three.sh`)"),
     ("tangents", "the reference implementation of MikkTSpace, meshoptimizer"),
-    ("rays", "Embree, by hand (`tests/bench/RAYS.md`)"),
+    ("rays", "Embree and Blender's Cycles, by hand (`tests/bench/RAYS.md`, `tests/blender_bake.sh`)"),
     ("shading and previews", "Mesa; Blender, Godot and three.js by hand (`tests/engines`)"),
     ("tex_c.h", "the C++ verbs, byte for byte; samples in C, Rust and Python print one sum, and in C# where mono is installed"),
 ]

@@ -183,6 +183,7 @@ abi() {
 engines() {
     local status=0
     script blender tests/blender.sh || status=1
+    script blender_bake tests/blender_bake.sh || status=1
     script engines tests/engines/engines.sh || status=1
     script three tests/browser/three.sh || status=1
     script ktx tests/ktx.sh || status=1

@@ -94,17 +94,37 @@ std::string plain(double value) {
     return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4).ptr};
 }
 
+// Whether any triangle has.
+bool has_area(const RayGroups& groups) {
+    for (const RayGroup& group : groups.all()) {
+        for (std::size_t t = 0; t < group.triangles.count(); ++t) {
+            const auto corners = group.triangles.at(t).corners();
+            const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+            if (dot(normal, normal) > 0.0) return true;
+        }
+    }
+    return false;
+}
+
 Error no_hit(const TangentSpace& low, const RayGroups& groups, const TransferredMaps& result) {
     const std::string reach = "rays reach " + plain(result.front) + " in front and " + plain(result.back) + " behind";
     const double distance = distance_between(low.part, groups);
+    if (result.diagonal == 0.0)
+        return {ErrorCode::bad_option, low.file, "all corners of its triangles are in one place"};
     if (distance > std::max(result.front, result.back)) {
         return {ErrorCode::bad_option, low.file,
                 "no ray hits the high mesh, which is " + plain(distance) + " away, while " + reach +
                     ": both must be in the same place and unit"};
     }
+    if (!has_area(groups)) return {ErrorCode::bad_option, low.file, "no triangle of the high mesh has an area"};
+    if (result.behind > 0) {
+        return {
+            ErrorCode::bad_option, low.file,
+            "no ray hits the high mesh from outside: the triangles that rays meet face the other way. Turn them, or "
+            "let back faces count"};
+    }
     return {ErrorCode::bad_option, low.file,
-            "no ray hits the high mesh from outside, while " + reach +
-                ": rays must reach farther, or its triangles face the other way"};
+            "no ray hits the high mesh, while " + reach + ": rays must reach farther"};
 }
 
 // Sets result.front and result.back.

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // preview-normals --mesh.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/meshes.h"
 #include "cli/program.h"
+#include "unit/gltf_files.h"
 
 namespace tex::cli {
 
@@ -49,6 +52,28 @@ TEST_F(PreviewNormalsMesh, ShowsEverythingThatHasAName) {
         ASSERT_EQ(ran.code, 0) << row.name << ": " << ran.err;
         EXPECT_GE(extent_of(name).width, 40) << row.name;
     }
+}
+
+// Two squares in the same place, of which a node moves one to the right.
+TEST_F(PreviewNormalsMesh, ShowsSeveralMeshesWhereTheirNodesPlaceThem) {
+    GltfMaker maker;
+    const int positions = maker.add(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3", 5126),
+              normals = maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126),
+              uvs = maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126),
+              indices = maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+    const std::string square =
+        fmt::format("{{\"attributes\":{{\"POSITION\":{},\"NORMAL\":{},\"TEXCOORD_0\":{}}},\"indices\":{}}}", positions,
+                    normals, uvs, indices);
+    scratch_.write("two.glb", maker.glb(square + "]},{\"name\":\"k\",\"primitives\":[" + square,
+                                        ",\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0,\"name\":\"a\"},"
+                                        "{\"mesh\":1,\"name\":\"b\",\"translation\":[1.5,0,0]}]"));
+    ASSERT_EQ(preview({"map.png", "-o", "two.png", "--mesh", "two.glb", "--camera", "0,0", "--size", "60"}).code, 0);
+    const auto picture = read_image(scratch_.path("two.png"));
+    ASSERT_TRUE(picture);
+    const auto green = [&](int i) { return picture->planes[1].at(i, 30); };
+    EXPECT_EQ(green(30), green(0)) << "there is a gap between them";
+    EXPECT_NE(green(14), green(0));
+    EXPECT_NE(green(45), green(0));
 }
 
 TEST_F(PreviewNormalsMesh, ReportsWhereTangentsComeFromAndDependsOnTheMesh) {

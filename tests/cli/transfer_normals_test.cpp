@@ -178,6 +178,13 @@ TEST_F(TransferNormals, ExplainsWhatIsWrongWithTheMeshes) {
     refuses({"sheet.obj", "far.obj", "-o", "x.png", "--quiet"}, 4, "both must be in the same place and unit");
     scratch_.write("flat.obj", "v 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 3 2\n");
     refuses({"sheet.obj", "flat.obj", "-o", "x.png", "--back", "1", "--quiet"}, 4, "face the other way");
+    // Nothing to hit, or nowhere to start.
+    scratch_.write("point.obj", "v 1 1 0\nv 1 1 0\nv 1 1 0\nf 1 2 3\n");
+    refuses({"sheet.obj", "point.obj", "-o", "x.png", "--quiet"}, 4, "no triangle of the high mesh has an area");
+    scratch_.write("dot.obj", "v 1 1 0\nv 1 1 0\nv 1 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1/1 2/2/1 3/3/1\n");
+    refuses({"dot.obj", "sheet.obj", "-o", "x.png", "--quiet"}, 4, "all corners of its triangles are in one place");
+    refuses({"crate_low.glb", "crate_high.glb", "-o", "x.png", "--high-color", "x.png", "--color-out", "c.png"}, 4,
+            "crate_high.glb: part \"crate_high\" has no UVs, which --high-color needs");
     scratch_.write("materials.obj", std::string(kSheetObj) + "usemtl wood\nf 1/1/1 2/2/2 5/5/5\n");
     refuses({"materials.obj", "sheet.obj", "-o", "x.png"}, 4, "--material chooses one");
 }

@@ -94,7 +94,7 @@ TEST_F(TransferPage, IsNoOtherFile) {
 }
 
 TEST_F(TransferPage, TakesColoursOfVertices) {
-    // The same mesh in three types of file.
+    // The same mesh in three types of file. Assimp makes the FBX.
     const std::string corners[4] = {"0 0 0.1", "2 0 0.1", "2 2 0.1", "0 2 0.1"};
     const int colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}};
     std::string obj,
@@ -108,12 +108,15 @@ TEST_F(TransferPage, TakesColoursOfVertices) {
     }
     scratch_.write("c.obj", obj + "f 1 2 3\nf 1 3 4\n");
     scratch_.write("c.ply", ply + "3 0 1 2\n3 0 2 3\n");
-    for (const std::string name : {"obj", "ply"}) {
+    const Ran made = shell(scratch_, "assimp export c.ply c.fbx -ffbxa");
+    ASSERT_TRUE(scratch_.has("c.fbx")) << made.out << made.err;
+    for (const std::string name : {"obj", "ply", "fbx"}) {
         const auto report = reports({"sheet.obj", "c." + name, "-o", "n.png", "--vertex-color-out", name + ".png",
                                      "--front", "2", "--back", "2"});
         EXPECT_EQ(report["vertex_colors"]["output"], name + ".png");
     }
     EXPECT_EQ(scratch_.read("obj.png"), scratch_.read("ply.png"));
+    EXPECT_EQ(scratch_.read("obj.png"), scratch_.read("fbx.png"));
     const auto picture = read_image(scratch_.path("obj.png"));
     ASSERT_TRUE(picture);
     EXPECT_GT(picture->planes[0].at(1, 94), 0.9f);  // red at the lower left

@@ -2,7 +2,10 @@
 // transfer-normals for the UDIM tiles of a low mesh: <UDIM> in the names of outputs.
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "cli/transfer_fixture.h"
 
@@ -69,6 +72,35 @@ TEST_F(TransferUdim, MakesWhatEachTileAloneMakes) {
     EXPECT_FALSE(scratch_.has("n.<UDIM>.png"));
 }
 
+// The second sheet is 0.2 above its own low one, and the first 0.1 below.
+TEST_F(TransferUdim, StoresHeightsOfAllTilesInOneRange) {
+    std::string high;
+    int vertex = 0;
+    for (const std::string& line : lines_of(two_sheets())) {
+        if (!line.starts_with("v ")) {
+            high += line + "\n";
+            continue;
+        }
+        const std::size_t last = line.rfind(' ');
+        high += line.substr(0, last) + fmt::format(" {}\n", std::stod(line.substr(last)) + (vertex++ < 9 ? -0.1 : 0.2));
+    }
+    scratch_.write("high.obj", high);
+    const Ran ran = does({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png", "--json"});
+    const auto lines = lines_as_json(ran);
+    ASSERT_EQ(lines.size(), 2u) << ran.out;
+    const double low = lines[0]["heights"]["stored"][0], top = lines[0]["heights"]["stored"][1];
+    EXPECT_EQ(lines[0]["heights"]["stored"], lines[1]["heights"]["stored"]);
+    EXPECT_NEAR(low, -lines[0]["reach"]["back"].get<double>(), 1e-6);
+    EXPECT_NEAR(top, lines[0]["reach"]["front"].get<double>(), 1e-6);
+    for (const auto& [tile, height] : {std::pair{"1001", -0.1}, std::pair{"1012", 0.2}}) {
+        const auto picture = read_image(scratch_.path(fmt::format("h.{}.png", tile)));
+        ASSERT_TRUE(picture);
+        EXPECT_NEAR(low + (top - low) * static_cast<double>(picture->planes[0].at(48, 48)), height, 1e-4);
+    }
+    const Ran said = does({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png"});
+    EXPECT_NE(said.out.find("h.1012.png: heights from -"), std::string::npos) << said.out;
+}
+
 TEST_F(TransferUdim, FollowsTileNameAndManyInputs) {
     does({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--tile", "1012"});
     EXPECT_TRUE(scratch_.has("n.1012.png") && !scratch_.has("n.1001.png"));
@@ -99,6 +131,8 @@ TEST_F(TransferUdim, WarnsOfTrianglesThatLeaveTheirTiles) {
         EXPECT_NE(ran.err.find(part), std::string::npos) << ran.err;
         EXPECT_EQ(ran.err.find(part), ran.err.rfind(part)) << "once: " << ran.err;
     }
+    const Ran one = go({"low.obj", "high.obj", "-o", "n.png", "--tile", "1001"});
+    EXPECT_NE(one.err.find("low.obj: 1 triangle reaches out of the UDIM tile"), std::string::npos) << one.err;
 }
 
 TEST_F(TransferUdim, LimitsMissedTexelsTileByTile) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays hit the same triangles in the tree of boxes as if every triangle is tested by itself, whatever the triangles.
-// Bytes are a seed of the scale, then coordinates of triangles, nine bytes each, then of rays, six bytes each. Few
-// different coordinates make neighbours, copies, needles and rays through vertices and along edges. Triangles that the
-// ray sees edge-on, to the rounding of doubles, may be hit or not: where their area is nothing but rounding, so is t.
+// Bytes are a seed of the scale, then coordinates of triangles, nine bytes each, then of rays, eight bytes each. Few
+// different coordinates make neighbours, copies, needles and rays through vertices and along edges. Each ray has seven
+// neighbours, which move and turn away from it step by step, or not at all. Triangles that the ray sees edge-on, to the
+// rounding of doubles, may be hit or not: where their area is nothing but rounding, so is t.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ namespace {
 
 using tex::Facing;
 
-constexpr std::size_t kMostFuzzed = 96, kRays = 8, kHeader = 2;
+constexpr std::size_t kMostFuzzed = 96, kRays = 8, kNeighbours = 8, kRayBytes = 8, kHeader = 2;
 
 double side_of(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
@@ -93,15 +94,36 @@ void expect_same(const tex::MeshPart& part, const std::vector<tex::Ray>& rays) {
     }
 }
 
+// The last two bytes say how far neighbours are from each other.
+void add_rays(const std::uint8_t* data, float scale, std::vector<tex::Ray>& rays) {
+    const double step = static_cast<double>(coordinate(data[6], scale)) / 16.0,
+                 turn = static_cast<double>(coordinate(data[7], 1.0f)) / 64.0;
+    for (std::size_t n = 0; n < kNeighbours; ++n) {
+        tex::Ray ray{};
+        double squared = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto way = static_cast<double>((n * (k + 1)) % kNeighbours);
+            ray.origin[k] = static_cast<double>(coordinate(data[k], scale)) + way * step;
+            ray.direction[k] = static_cast<double>(coordinate(data[3 + k], 1.0f)) + way * turn;
+            squared += ray.direction[k] * ray.direction[k];
+        }
+        if (squared == 0.0) continue;
+        for (double& d : ray.direction) d /= std::sqrt(squared);
+        ray.length = 1000.0 * static_cast<double>(scale);
+        ray.facing = static_cast<Facing>(data[0] % 3);
+        rays.push_back(ray);
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    if (size < kHeader + 9 + 6) return 0;
+    if (size < kHeader + 9 + kRayBytes) return 0;
     const float scale = std::ldexp(1.0f, static_cast<int>(data[0] % 200) - 100);
     const std::size_t rays_wanted = std::min<std::size_t>(kRays, 1 + data[1] % kRays);
     tex::MeshPart part;
     std::size_t at = kHeader;
-    for (; at + 9 + 6 * rays_wanted <= size && part.triangles() < kMostFuzzed; at += 9) {
+    for (; at + 9 + kRayBytes * rays_wanted <= size && part.triangles() < kMostFuzzed; at += 9) {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::uint8_t* p = data + at + 3 * c;
             part.indices.push_back(static_cast<std::uint32_t>(part.positions.size()));
@@ -110,20 +132,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (part.indices.empty()) return 0;
     std::vector<tex::Ray> rays;
-    for (; at + 6 <= size && rays.size() < rays_wanted; at += 6) {
-        tex::Ray ray{};
-        double squared = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            ray.origin[k] = static_cast<double>(coordinate(data[at + k], scale));
-            ray.direction[k] = static_cast<double>(coordinate(data[at + 3 + k], 1.0f));
-            squared += ray.direction[k] * ray.direction[k];
-        }
-        if (squared == 0.0) continue;
-        for (double& d : ray.direction) d /= std::sqrt(squared);
-        ray.length = 1000.0 * static_cast<double>(scale);
-        ray.facing = static_cast<Facing>(data[at] % 3);
-        rays.push_back(ray);
-    }
+    for (; at + kRayBytes <= size && rays.size() < kNeighbours * rays_wanted; at += kRayBytes)
+        add_rays(data + at, scale, rays);
     if (!rays.empty()) expect_same(part, rays);
     return 0;
 }

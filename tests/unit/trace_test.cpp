@@ -135,6 +135,50 @@ TEST(Trace, HitsWhatEveryTriangleTestedByItselfSays) {
     });
 }
 
+// Rays that look nearly the same way go through the tree together; these differ by a little, by much, or in one of
+// them.
+std::vector<Ray> neighbours_of(const Ray& ray, Randoms& random, double scale) {
+    const double sizes[] = {0.0, 1e-9, 1e-4, 0.01, 0.3}, place = scale * sizes[random.below(5)],
+                 turn = 0.1 * sizes[random.below(5)];
+    const bool is_odd = random.below(3) == 0;
+    std::vector<Ray> rays;
+    for (int k = 0; k < 19; ++k) {
+        Point from{}, to{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            from[axis] = ray.origin[axis] + random.around(place);
+            to[axis] = from[axis] + (is_odd && k == 5 ? -1.0 : 1.0) * ray.direction[axis] + random.around(turn);
+        }
+        const Facing facing = random.below(4) == 0 ? kFacings[random.below(3)] : ray.facing;
+        rays.push_back(make_ray(from, to, facing, random.below(8) == 0 ? scale * random.unit() : ray.length));
+    }
+    return rays;
+}
+
+TEST(Trace, NeighboursHitWhatTheyHitAlone) {
+    on_every_target([] {
+        for (unsigned seed = 0; seed < 12; ++seed) {
+            const MeshPart part = seed % 3 == 0 ? wavy_part(60) : mixed_triangles(seed, seed == 4 ? 3 : 2000);
+            const auto triangles = plain_triangles(part);
+            const auto tree = BoxTree::build(Triangles({&part}), {});
+            ASSERT_TRUE(tree);
+            double scale = 1e-30;
+            for (const Float3& p : part.positions) scale = std::max(scale, static_cast<double>(std::abs(p.x)));
+            Randoms random(seed + 200);
+            for (int k = 0; k < 150; ++k) {
+                const std::vector<Ray> rays = neighbours_of(aimed_ray(random, triangles, scale), random, scale);
+                std::vector<RayHit> hits(rays.size());
+                trace_rays(tree->view(), rays.data(), rays.size(), hits.data());
+                for (std::size_t r = 0; r < rays.size(); ++r) {
+                    const RayHit alone = one_hit(*tree, rays[r]);
+                    ASSERT_EQ(hits[r].triangle, alone.triangle) << seed << " " << k << " " << r;
+                    ASSERT_EQ(hits[r].t, alone.t);
+                    for (std::size_t c = 0; c < 3; ++c) ASSERT_EQ(hits[r].weights[c], alone.weights[c]);
+                }
+            }
+        }
+    });
+}
+
 // The reference above uses the same formulas. This one does not.
 TEST(Trace, AgreesWithVolumesInLongDouble) {
     const MeshPart part = mixed_triangles(4, 400, true);
@@ -250,8 +294,8 @@ TEST(BoxTree, FindsTheNearestPoint) {
             const double wanted = reference::nearest_squared(triangles, p);
             const NearestPoint found = tree->nearest({p[0], p[1], p[2]});
             EXPECT_NEAR(std::sqrt(found.squared), std::sqrt(wanted), 1e-6);
-            EXPECT_TRUE(tree->is_within({p[0], p[1], p[2]}, found.squared));
-            EXPECT_FALSE(tree->is_within({p[0], p[1], p[2]}, 0.999 * found.squared));
+            EXPECT_NE(tree->any_within({p[0], p[1], p[2]}, found.squared), kNoHit);
+            EXPECT_EQ(tree->any_within({p[0], p[1], p[2]}, 0.999 * found.squared), kNoHit);
             EXPECT_EQ(tree->nearest({p[0], p[1], p[2]}, 0.99 * found.squared).triangle, kNoHit);
         }
     }

@@ -18,9 +18,10 @@
 namespace tex::cli {
 namespace {
 
-Error no_uvs(const MeshPart& part, const std::string& option) {
-    return {
-        ErrorCode::bad_option, {}, fmt::format("part \"{}\" has no UVs, which {} needs", printable(part.name), option)};
+// An error about part k.
+Error lacks(const HighParts& high, std::size_t k, const std::string& what, const std::string& option) {
+    return {ErrorCode::bad_option, high.names[static_cast<std::size_t>(high.files[k])],
+            fmt::format("part \"{}\" has no {}, which {} needs", printable(high.parts[k].name), what, option)};
 }
 
 std::string path_of(const std::string& pattern, const Task& task) {
@@ -122,11 +123,8 @@ Result<void> HighDetailOptions::read_normals_of(Job& job, const HighParts& high,
         const Assigned* const file = find(normals_, high.materials[k]);
         if (file == nullptr) continue;
         const MeshPart& part = high.parts[k];
-        if (part.uvs.empty()) return no_uvs(part, "--high-normals");
-        if (part.normals.empty())
-            return Error{ErrorCode::bad_option,
-                         {},
-                         fmt::format("part \"{}\" has no normals, which --high-normals needs", printable(part.name))};
+        if (part.uvs.empty()) return lacks(high, k, "UVs", "--high-normals");
+        if (part.normals.empty()) return lacks(high, k, "normals", "--high-normals");
         if (maps[file] == nullptr) {
             auto map = read_map(job, path_of(file->pattern, job.task), y_);
             if (!map) return map.error();
@@ -148,7 +146,7 @@ Result<void> HighDetailOptions::read_colors_of(Job& job, const HighParts& high, 
     for (std::size_t k = 0; k < high.parts.size(); ++k) {
         const Assigned* const file = find(colors_, high.materials[k]);
         if (file == nullptr) continue;
-        if (high.parts[k].uvs.empty()) return no_uvs(high.parts[k], "--high-color");
+        if (high.parts[k].uvs.empty()) return lacks(high, k, "UVs", "--high-color");
         if (images[file] == nullptr) {
             ReadOptions how = job.read_options;
             how.values = FileValues::unit;

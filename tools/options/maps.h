@@ -38,6 +38,7 @@ public:
     [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
     // The file type. Throws UsageError as amend().
     [[nodiscard]] Container container_for(const Task& task) const { return container_of_path(path_of(task)); }
+    [[nodiscard]] std::string path_for(const Task& task) const { return path_of(task); }
 
 private:
     [[nodiscard]] std::string path_of(const Task& task) const;

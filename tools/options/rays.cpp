@@ -236,9 +236,7 @@ Result<void> TransferMaps::write(Job& job, TransferredMaps& maps, YAxis y) const
         if (auto done = write_normals(job, object_, std::move(maps.object), YAxis::up, "object"); !done) return done;
     }
     if (heights_.is_given()) {
-        auto done =
-            write_lengths(job, heights_, std::move(maps.heights), maps.lowest, maps.highest, job.report["heights"]);
-        if (!done) return done;
+        if (auto done = write_heights(job, maps); !done) return done;
     }
     if (positions_.is_given()) {
         Json report;
@@ -285,6 +283,19 @@ Result<void> TransferMaps::write_normals(Job& job, const MapOutput& output, Norm
     if (auto done = output.write(job, *texture, report); !done) return done;
     job.report[key] = std::move(report);
     return {};
+}
+
+// Tiles of a mesh must fit each other. So 0 and 1 are what rays reach, which is the same for all of them, whatever each
+// has hit.
+Result<void> TransferMaps::write_heights(Job& job, TransferredMaps& maps) const {
+    float lowest = maps.lowest, highest = maps.highest;
+    if (job.task.is_tile_of_mesh() && !heights_.holds_floats(job)) {
+        lowest = std::min(lowest, static_cast<float>(-maps.back));
+        highest = std::max(highest, static_cast<float>(maps.front));
+        job.say(fmt::format("{}: heights from {:.4g} to {:.4g} are stored from 0 to 1\n",
+                            printable(heights_.path_for(job.task)), lowest, highest));
+    }
+    return write_lengths(job, heights_, std::move(maps.heights), lowest, highest, job.report["heights"]);
 }
 
 // As they are in files of floats, otherwise from 0 to 1.

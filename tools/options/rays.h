@@ -79,6 +79,7 @@ public:
 private:
     [[nodiscard]] Result<void> write_normals(Job& job, const MapOutput& output, NormalMap normals, YAxis y,
                                              const char* key) const;
+    [[nodiscard]] Result<void> write_heights(Job& job, TransferredMaps& maps) const;
     [[nodiscard]] Result<void> write_lengths(Job& job, const MapOutput& output, Plane<float> lengths, float lowest,
                                              float highest, Json& report) const;
     [[nodiscard]] Result<void> write_occlusion(Job& job, TransferredMaps& maps) const;

@@ -58,6 +58,7 @@ void TangentSpaceOptions::add(Command& command) {
 }
 
 void TangentSpaceOptions::add_input(Command& command, bool with_from) {
+    draws_ = true;
     add_mesh(command, "the mesh that the inputs are on: glTF, GLB, OBJ, FBX, PLY ...; models have their own");
     add_parts(command, kNodeOfMap);
     if (with_from) command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the inputs' vectors");
@@ -248,14 +249,23 @@ Result<MeshSpace> TangentSpaceOptions::output(const ModelInput& map, const ReadO
 }
 
 Result<MeshSpace> TangentSpaceOptions::read(const ModelInput& map, std::optional<TangentSource> tangents,
-                                            Decoder decoder, const ReadOptions& options, const Execution& execution) {
+                                            Decoder decoder, const ReadOptions& options,
+                                            const Execution& execution) const {
     const auto model = map.read(LastModel::Part::all, options);
     if (!model) return model.error();
     MeshSelection selection = selection_of(**model, *map.map);
     selection.tangents = tangents;
-    auto selected = select_part((*model)->mesh, selection, execution);
+    auto selected = select_part((*model)->mesh, in_place((*model)->mesh, selection), execution);
     if (!selected) return selected.error().of(map.name());
     return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder, map.file);
+}
+
+// One mesh is looked at along its own axes. Several would lie on each other.
+MeshSelection TangentSpaceOptions::in_place(const Mesh& mesh, MeshSelection selection) const {
+    const auto is_other = [&](const MeshPart& part) { return part.mesh != mesh.parts.front().mesh; };
+    const bool has_several = !mesh.nodes.empty() && std::any_of(mesh.parts.begin(), mesh.parts.end(), is_other);
+    if (draws_ && from == Space::tangent && selection.node.empty() && has_several) selection.in_scene = true;
+    return selection;
 }
 
 Result<MeshSpace> TangentSpaceOptions::of_low(const Task& task, const ReadOptions& options,
@@ -322,7 +332,7 @@ Result<std::shared_ptr<const SelectedPart>> TangentSpaceOptions::load(const std:
     if (!mesh) return mesh.error().of(file);
     MeshSelection selection = selection_;
     selection.tangents = tangents;
-    auto selected = select_part(*mesh, selection, execution);
+    auto selected = select_part(*mesh, in_place(*mesh, std::move(selection)), execution);
     if (!selected) return with_option(selected.error()).of(file);
     loaded = {std::move(files), std::make_shared<const SelectedPart>(std::move(*selected))};
     return loaded.part;

@@ -142,9 +142,10 @@ private:
     [[nodiscard]] int tile_of_low(const Task& task) const;
     [[nodiscard]] Result<UvTiles> all_tiles_of_low(const std::string& file, const ReadOptions& read) const;
     [[nodiscard]] std::vector<std::string> remarks_on_tiles(const Job& job) const;
-    [[nodiscard]] static Result<MeshSpace> read(const ModelInput& map, std::optional<TangentSource> tangents,
-                                                Decoder decoder, const ReadOptions& options,
-                                                const Execution& execution);
+    [[nodiscard]] Result<MeshSpace> read(const ModelInput& map, std::optional<TangentSource> tangents, Decoder decoder,
+                                         const ReadOptions& options, const Execution& execution) const;
+    // The selection, with meshes where the scene places them if a picture shows several.
+    [[nodiscard]] MeshSelection in_place(const Mesh& mesh, MeshSelection selection) const;
     [[nodiscard]] Result<MeshSpace> read(const std::string& file, std::optional<TangentSource> tangents,
                                          Decoder decoder, int tile, const ReadOptions& options,
                                          const Execution& execution) const;
@@ -161,6 +162,7 @@ private:
 
     std::string mesh_, to_mesh_;
     bool converts_ = false;  // there is an output
+    bool draws_ = false;     // or the mesh is looked at
     int tile_ = 0;           // of low meshes; 0: all triangles
     MeshSelection selection_;
     Decoder decoder_ = Decoder::gltf;

@@ -40,7 +40,7 @@ std::vector<int> TangentSpaceOptions::tiles_of_low(const std::string& file, cons
 
 void TangentSpaceOptions::note(Job& job, const MeshSpace& mesh) const {
     std::vector<std::string> remarks = mesh.selected().remarks;
-    if (job.task.is_tile_of_mesh()) {
+    if (job.task.is_tile_of_mesh() || tile_ != 0) {
         for (std::string& remark : remarks_on_tiles(job)) remarks.push_back(std::move(remark));
     }
     const std::lock_guard lock(mutex_);

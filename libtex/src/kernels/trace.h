@@ -9,9 +9,10 @@
 // Triangles are tested in double, four at a time (Woop, Benthin, Wald, Watertight Ray/Triangle Intersection, JCGT 2
 // (1), 2013). The side of an edge that the ray passes on is computed from the two ends of the edge alone, by operations
 // whose result only changes its sign if the ends change places. So two triangles with a common edge agree, and the ray
-// hits at least one of them; a ray that meets the edge itself hits both. The order in which boxes are visited does not
-// matter: the hit is the least (t, triangle) of all triangles that are hit. There is one exception: a triangle that the
-// ray sees edge-on, so that its area is nothing but rounding, may be passed over if the ray does not meet its box.
+// hits at least one of them; a ray that meets the edge itself hits both. The order in which boxes are visited, and
+// which rays go together, does not matter: the hit is the least (t, triangle) of all triangles that are hit. There is
+// one exception: a triangle that the ray sees edge-on, so that its area is nothing but rounding, may be passed over if
+// the ray does not meet its box.
 
 #pragma once
 
@@ -69,7 +70,9 @@ struct RayHit {
     std::uint32_t triangle = kNoHit;
 };
 
-// hits[k] becomes the hit of rays[k]. A ray whose origin is farther away than 10^30 sizes of the tree hits nothing.
+// hits[k] becomes the hit of rays[k]. Eight rays that begin near each other and look nearly the same way cost half of
+// what they cost alone, if they follow each other. A ray whose origin is farther away than 10^30 sizes of the tree hits
+// nothing.
 void trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits);
 
 // blocked[k] becomes 1 if rays[k] hits anything, otherwise 0: what trace_rays() finds, in less time.

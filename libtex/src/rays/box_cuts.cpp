@@ -31,25 +31,27 @@ struct Cut {
     int bin = 0;  // the first one on the right
 };
 
-// The cheapest cut of these bins, if it is cheaper than `best`.
+// The cheapest cut of these bins, if it is cheaper than `best`. Before and after an empty bin, a cut costs the same.
 void choose_cut(const Bin* bins, int axis, Cut& best) {
     float right_cost[kBins];
     FloatBox box;
     std::size_t count = 0;
     for (int k = kBins - 1; k > 0; --k) {
+        if (bins[k].count == 0) continue;
         box.include(bins[k].box);
         count += bins[k].count;
-        right_cost[k] = count == 0 ? 0.0f : box.area() * static_cast<float>(count);
+        right_cost[k] = box.area() * static_cast<float>(count);
     }
-    const std::size_t all = count + bins[0].count;
     box = {};
     count = 0;
-    for (int k = 1; k < kBins; ++k) {
-        box.include(bins[k - 1].box);
-        count += bins[k - 1].count;
-        if (count == 0 || count == all) continue;
-        const float cost = box.area() * static_cast<float>(count) + right_cost[k];
-        if (cost < best.cost) best = {cost, axis, k};
+    for (int k = 0; k < kBins; ++k) {
+        if (bins[k].count == 0) continue;
+        if (count > 0) {
+            const float cost = box.area() * static_cast<float>(count) + right_cost[k];
+            if (cost < best.cost) best = {cost, axis, k};
+        }
+        box.include(bins[k].box);
+        count += bins[k].count;
     }
 }
 

@@ -41,8 +41,8 @@ public:
     // The point nearest to `p` among those whose squared distance is below `most`. Of several, that of the first
     // triangle.
     [[nodiscard]] NearestPoint nearest(Vector3 p, double most = std::numeric_limits<double>::infinity()) const;
-    // Whether any point is within this squared distance.
-    [[nodiscard]] bool is_within(Vector3 p, double squared) const;
+    // A triangle within this squared distance, or kNoHit.
+    [[nodiscard]] std::uint32_t any_within(Vector3 p, double squared) const;
 
     // Between the corners of the box that holds all triangles, in the unit of the meshes.
     [[nodiscard]] Vector3 low() const { return low_; }

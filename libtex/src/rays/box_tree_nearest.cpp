@@ -104,9 +104,9 @@ NearestPoint BoxTree::search(Vector3 p, double most, double enough) const {
 
 NearestPoint BoxTree::nearest(Vector3 p, double most) const { return search(p, most, -1.0); }
 
-bool BoxTree::is_within(Vector3 p, double squared) const {
+std::uint32_t BoxTree::any_within(Vector3 p, double squared) const {
     const double more = squared > 0.0 ? squared * (1.0 + 0x1p-50) : 0x1p-1000;
-    return search(p, more, squared).triangle != kNoHit;
+    return search(p, more, squared).triangle;
 }
 
 }  // namespace tex::inline v1

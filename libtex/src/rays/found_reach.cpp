@@ -3,6 +3,7 @@
 #include "rays/found_reach.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
@@ -38,18 +39,24 @@ struct BothSides {
 
 // Some triangles of the low mesh, with a tree over them.
 struct LowSide {
+    const MeshPart& part;  // of these triangles alone
     const BoxTree& tree;
     const std::vector<std::uint32_t>& triangles;
     const RayDirections& directions;
 };
 
 // From the vertices of the high mesh to the low one. A vertex that is nearer than both distances so far changes
-// neither.
+// neither; mostly, the triangle near the last vertex says so.
 void see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, double most, BothSides& sides) {
+    std::uint32_t near = kNoHit;
     for (int k = begin; k < end; ++k) {
         const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
         const double known = std::min(sides.front.value(), sides.back.value());
-        if (low.tree.is_within(p, known * known)) continue;
+        if (near != kNoHit &&
+            nearest_on_triangle(p, Triangles::Place{low.part, near}.corners()).squared <= known * known)
+            continue;
+        near = low.tree.any_within(p, known * known);
+        if (near != kNoHit) continue;
         const NearestPoint nearest = low.tree.nearest(p, most * most);
         if (nearest.triangle == kNoHit) continue;
         const Vector3 outwards = low.directions.at(low.triangles[nearest.triangle], nearest.weights, nearest.point);
@@ -112,7 +119,7 @@ Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& tr
     const MeshPart part = only_these(low, triangles);
     const auto low_tree = BoxTree::build(Triangles({&part}), execution);
     if (!low_tree) return low_tree.error();
-    const LowSide side{*low_tree, triangles, directions};
+    const LowSide side{part, *low_tree, triangles, directions};
     for (const MeshPart* high : group.triangles.parts()) {
         const auto from_high = [&](int begin, int end) { see_vertices(*high, begin, end, side, most, sides); };
         const auto vertices = static_cast<int>(high->positions.size());

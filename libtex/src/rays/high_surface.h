@@ -20,8 +20,14 @@ public:
 
     using Weights = std::array<double, 3>;
 
+    // The triangle that normal_at() saw last, with the normals of its corners: neighbours often hit the same one.
+    struct Seen {
+        const MeshPart* part = nullptr;
+        std::size_t number = 0;
+        std::array<Vector3, 3> normals;
+    };
     // The normal at the place: see transfer.h. Of unit length.
-    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights) const;
+    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights, Seen& seen) const;
     [[nodiscard]] static Vector3 face_normal(const Triangles::Place& place);
 
     [[nodiscard]] bool has_colors() const { return has_colors_; }

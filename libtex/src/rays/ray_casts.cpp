@@ -28,31 +28,36 @@ RayEnd nearer(const RayHit& out, const RayHit& in) {
 
 }  // namespace
 
-// A triangle that the ray outwards meets is seen from outside if it turns its back to that ray.
-void RayCaster::cast_nearest(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const {
-    std::vector<Ray> rays;
-    for (const RayStart& s : starts) {
-        rays.push_back(ray_from(s.point, s.direction, s.front, backfaces ? Facing::both : Facing::back));
-        rays.push_back(ray_from(s.point, -1.0 * s.direction, back_, backfaces ? Facing::both : Facing::front));
-    }
-    std::vector<RayHit> hits(rays.size());
-    trace_rays(tree_.view(), rays.data(), rays.size(), hits.data());
-    for (std::size_t k = 0; k < starts.size(); ++k) ends[k] = nearer(hits[2 * k], hits[2 * k + 1]);
+void RayCaster::trace(Scratch& scratch) const {
+    scratch.hits.assign(scratch.rays.size(), {});
+    trace_rays(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data());
 }
 
-void RayCaster::cast_outermost(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const {
-    std::vector<Ray> rays;
+// A triangle that the ray outwards meets is seen from outside if it turns its back to that ray. Rays that look the same
+// way are neighbours, because the tree is faster then.
+void RayCaster::cast_nearest(const Starts& starts, Ends& ends, Scratch& scratch) const {
+    scratch.rays.clear();
+    for (const RayStart& s : starts)
+        scratch.rays.push_back(ray_from(s.point, s.direction, s.front, backfaces_ ? Facing::both : Facing::back));
+    for (const RayStart& s : starts)
+        scratch.rays.push_back(ray_from(s.point, -1.0 * s.direction, back_, backfaces_ ? Facing::both : Facing::front));
+    trace(scratch);
+    for (std::size_t k = 0; k < starts.size(); ++k) ends[k] = nearer(scratch.hits[k], scratch.hits[starts.size() + k]);
+}
+
+void RayCaster::cast_outermost(const Starts& starts, Ends& ends, bool backfaces, Scratch& scratch) const {
+    scratch.rays.clear();
     for (const RayStart& s : starts) {
-        rays.push_back(ray_from(s.point + s.front * s.direction, -1.0 * s.direction, s.front + back_,
-                                backfaces ? Facing::both : Facing::front));
+        scratch.rays.push_back(ray_from(s.point + s.front * s.direction, -1.0 * s.direction, s.front + back_,
+                                        backfaces ? Facing::both : Facing::front));
     }
-    std::vector<RayHit> hits(rays.size());
-    trace_rays(tree_.view(), rays.data(), rays.size(), hits.data());
-    for (std::size_t k = 0; k < starts.size(); ++k) ends[k] = end_of(hits[k], starts[k].front - hits[k].t);
+    trace(scratch);
+    for (std::size_t k = 0; k < starts.size(); ++k)
+        ends[k] = end_of(scratch.hits[k], starts[k].front - scratch.hits[k].t);
 }
 
 // Casts what has missed again, for triangles seen from behind.
-void RayCaster::note_behind(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const {
+void RayCaster::note_behind(const Starts& starts, Ends& ends, Scratch& scratch) const {
     if (backfaces_) {
         for (std::size_t k = 0; k < starts.size(); ++k) {
             if (ends[k].triangle == kNoHit) continue;
@@ -60,26 +65,27 @@ void RayCaster::note_behind(const std::vector<RayStart>& starts, std::vector<Ray
         }
         return;
     }
-    std::vector<RayStart> missed;
-    std::vector<std::size_t> which;
+    scratch.missed.clear();
+    scratch.which.clear();
     for (std::size_t k = 0; k < starts.size(); ++k) {
         if (ends[k].triangle != kNoHit) continue;
-        missed.push_back(starts[k]);
-        which.push_back(k);
+        scratch.missed.push_back(starts[k]);
+        scratch.which.push_back(k);
     }
-    if (missed.empty()) return;
-    std::vector<RayEnd> seen(missed.size());
-    cast_outermost(missed, seen, true);
-    for (std::size_t k = 0; k < missed.size(); ++k) ends[which[k]].behind = seen[k].triangle != kNoHit;
+    if (scratch.missed.empty()) return;
+    scratch.seen.assign(scratch.missed.size(), {});
+    cast_outermost(scratch.missed, scratch.seen, true, scratch);
+    for (std::size_t k = 0; k < scratch.missed.size(); ++k)
+        ends[scratch.which[k]].behind = scratch.seen[k].triangle != kNoHit;
 }
 
-void RayCaster::cast(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const {
+void RayCaster::cast(const Starts& starts, Ends& ends, Scratch& scratch) const {
     ends.assign(starts.size(), {});
     if (choice_ == HitChoice::nearest)
-        cast_nearest(starts, ends, backfaces_);
+        cast_nearest(starts, ends, scratch);
     else
-        cast_outermost(starts, ends, backfaces_);
-    note_behind(starts, ends);
+        cast_outermost(starts, ends, backfaces_, scratch);
+    note_behind(starts, ends, scratch);
 }
 
 RayEnd RayCaster::cast_line(const RayStart& start) const {

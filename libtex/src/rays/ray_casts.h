@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -34,8 +35,16 @@ public:
     RayCaster(const Triangles& triangles, const BoxTree& tree, HitChoice choice, bool backfaces, double back)
         : triangles_(triangles), tree_(tree), choice_(choice), backfaces_(backfaces), back_(back) {}
 
+    // Memory that casts use one after the other.
+    struct Scratch {
+        std::vector<Ray> rays;
+        std::vector<RayHit> hits;
+        std::vector<RayStart> missed;
+        std::vector<RayEnd> seen;
+        std::vector<std::size_t> which;
+    };
     // ends[k] belongs to starts[k].
-    void cast(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const;
+    void cast(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, Scratch& scratch) const;
 
     // The nearest triangle seen from outside on the whole line of a start.
     [[nodiscard]] RayEnd cast_line(const RayStart& start) const;
@@ -45,9 +54,12 @@ public:
     [[nodiscard]] Vector3 point_of(const RayEnd& end) const { return mix(place_of(end).corners(), end.weights); }
 
 private:
-    void cast_outermost(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const;
-    void cast_nearest(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, bool backfaces) const;
-    void note_behind(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends) const;
+    using Starts = std::vector<RayStart>;
+    using Ends = std::vector<RayEnd>;
+    void cast_outermost(const Starts& starts, Ends& ends, bool backfaces, Scratch& scratch) const;
+    void cast_nearest(const Starts& starts, Ends& ends, Scratch& scratch) const;
+    void trace(Scratch& scratch) const;
+    void note_behind(const Starts& starts, Ends& ends, Scratch& scratch) const;
 
     const Triangles& triangles_;
     const BoxTree& tree_;

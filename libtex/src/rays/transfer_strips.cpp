@@ -12,7 +12,7 @@ namespace tex::inline v1 {
 namespace {
 
 // Rays that are cast at once.
-constexpr int kRaysAtOnce = 2048;
+constexpr int kRaysAtOnce = 512;
 // The part of the missed texels whose need is reported.
 constexpr double kMostMissed = 0.95;
 
@@ -39,40 +39,52 @@ void put(NormalMap& map, int i, int j, Vector3 n) {
 }
 
 const LowTriangle& TransferStrips::triangle_of(Strip& strip, const Covered& covered) const {
-    if (covered.triangle != strip.number) {
-        strip.number = covered.triangle;
-        strip.triangle = LowTriangle(scene_.low, static_cast<std::size_t>(covered.triangle), result_.map.extent());
+    Kept& kept = strip.kept[static_cast<std::size_t>(covered.triangle) % kKept];
+    if (covered.triangle != kept.number) {
+        kept.number = covered.triangle;
+        kept.triangle = LowTriangle(scene_.low, static_cast<std::size_t>(covered.triangle), result_.map.extent());
     }
-    return strip.triangle;
+    return kept.triangle;
 }
 
 void TransferStrips::run(int strip) {
-    Strip work;
-    const std::int64_t overlaps = scene_.coverage.cover(strip, work.covered);
+    std::unique_ptr<Strip> work = take_strip();
+    const std::int64_t overlaps = scene_.coverage.cover(strip, work->covered);
     const Extent extent = result_.map.extent();
     const int rows = scene_.coverage.strip_rows() / n_, first = strip * rows;
     const int width = std::max(1, kRaysAtOnce / (n_ * n_));
     for (int j = first; j < std::min(extent.height, first + rows); ++j) {
-        for (int i = 0; i < extent.width; i += width) cast(work, first, j, i, std::min(extent.width, i + width));
+        for (int i = 0; i < extent.width; i += width) cast(*work, first, j, i, std::min(extent.width, i + width));
     }
-    add(work, overlaps);
+    add(std::move(work), overlaps);
 }
 
-void TransferStrips::add(Strip& strip, std::int64_t overlaps) {
+std::unique_ptr<TransferStrips::Strip> TransferStrips::take_strip() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<Strip>();
+    std::unique_ptr<Strip> strip = std::move(idle_.back());
+    idle_.pop_back();
+    return strip;
+}
+
+void TransferStrips::add(std::unique_ptr<Strip> strip, std::int64_t overlaps) {
+    const Found& found = *strip;
     const std::lock_guard lock(mutex_);
     result_.overlaps += overlaps;
-    result_.covered += strip.covered_texels;
-    result_.missed += strip.missed;
-    result_.backward += strip.backward;
-    result_.singular += strip.singular;
-    result_.behind += strip.behind;
-    result_.hopeless += strip.hopeless;
-    result_.rays += strip.rays;
-    for (const auto& [sum, part] : {std::pair{&heights_, &strip.heights}, {&thickness_, &strip.thickness}}) {
+    result_.covered += found.covered_texels;
+    result_.missed += found.missed;
+    result_.backward += found.backward;
+    result_.singular += found.singular;
+    result_.behind += found.behind;
+    result_.hopeless += found.hopeless;
+    result_.rays += found.rays;
+    for (const auto& [sum, part] : {std::pair{&heights_, &found.heights}, {&thickness_, &found.thickness}}) {
         sum->lowest = std::min(sum->lowest, part->lowest);
         sum->highest = std::max(sum->highest, part->highest);
     }
-    needs_.insert(needs_.end(), strip.needs.begin(), strip.needs.end());
+    needs_.insert(needs_.end(), found.needs.begin(), found.needs.end());
+    static_cast<Found&>(*strip) = {};
+    idle_.push_back(std::move(strip));
 }
 
 void TransferStrips::finish() {
@@ -117,27 +129,29 @@ void TransferStrips::collect(Strip& strip, int first_row, int j, int begin, int 
     const std::size_t width = static_cast<std::size_t>(map_width) * n;
     strip.samples.clear();
     strip.starts.clear();
+    const Covered* const top = strip.covered.data() + static_cast<std::size_t>(j - first_row) * n * width;
     for (int i = begin; i < end; ++i) {
-        for (std::size_t k = 0; k < n * n; ++k) {
-            const Covered& covered = strip.covered[(static_cast<std::size_t>(j - first_row) * n + k / n) * width +
-                                                   static_cast<std::size_t>(i) * n + k % n];
-            if (!covered.inside) continue;
-            const auto triangle = static_cast<std::size_t>(covered.triangle);
-            const Vector3 point = triangle_of(strip, covered).point(covered.weights);
-            double x = 0.0, y = 0.0;
-            if (scene_.starts.has_pictures()) {
-                x = (i + (static_cast<double>(k % n) + 0.5) / n_) / map_width;
-                y = (j + (static_cast<double>(k / n) + 0.5) / n_) / map_height;
+        for (std::size_t row = 0, k = 0; row < n; ++row) {
+            for (std::size_t column = 0; column < n; ++column, ++k) {
+                const Covered& covered = top[row * width + static_cast<std::size_t>(i) * n + column];
+                if (!covered.inside) continue;
+                const auto triangle = static_cast<std::size_t>(covered.triangle);
+                const Vector3 point = triangle_of(strip, covered).point(covered.weights);
+                double x = 0.0, y = 0.0;
+                if (scene_.starts.has_pictures()) {
+                    x = (i + (static_cast<double>(column) + 0.5) / n_) / map_width;
+                    y = (j + (static_cast<double>(row) + 0.5) / n_) / map_height;
+                }
+                strip.samples.push_back({i, k, covered, scene_.groups.of_low(triangle)});
+                strip.starts.push_back(scene_.starts.at(triangle, covered.weights, point, x, y));
             }
-            strip.samples.push_back({i, k, covered, scene_.groups.of_low(triangle)});
-            strip.starts.push_back(scene_.starts.at(triangle, covered.weights, point, x, y));
         }
     }
 }
 
 void TransferStrips::cast_groups(Strip& strip) const {
     if (scene_.casters.size() == 1 && scene_.groups.has_all())
-        return scene_.casters.front().cast(strip.starts, strip.ends);
+        return scene_.casters.front().cast(strip.starts, strip.ends, strip.casts);
     strip.ends.assign(strip.starts.size(), {});
     for (std::size_t group = 0; group < scene_.casters.size(); ++group) {
         strip.chosen.clear();
@@ -148,7 +162,7 @@ void TransferStrips::cast_groups(Strip& strip) const {
             strip.chosen_starts.push_back(strip.starts[k]);
         }
         if (strip.chosen.empty()) continue;
-        scene_.casters[group].cast(strip.chosen_starts, strip.chosen_ends);
+        scene_.casters[group].cast(strip.chosen_starts, strip.chosen_ends, strip.casts);
         for (std::size_t k = 0; k < strip.chosen.size(); ++k) strip.ends[strip.chosen[k]] = strip.chosen_ends[k];
     }
 }
@@ -181,7 +195,7 @@ void TransferStrips::add_hit(Strip& strip, int i, int j, std::size_t k, Hits& hi
     const Sample& sample = strip.samples[k];
     const RayCaster& caster = scene_.casters[static_cast<std::size_t>(sample.group)];
     const Triangles::Place hit = caster.place_of(ray);
-    const Vector3 normal = scene_.surface.normal_at(hit, ray.weights);
+    const Vector3 normal = scene_.surface.normal_at(hit, ray.weights, strip.seen);
     hits.normal = hits.normal + normal;
     hits.position = hits.position + from.point + ray.height * from.direction;
     hits.height += ray.height;
@@ -248,13 +262,13 @@ void TransferStrips::miss_texel(Strip& strip, int i, int j, std::size_t begin) c
 // In the tangent space at the centre of the texel, on the triangle of the sample that is nearest to it.
 void TransferStrips::encode_texel(Strip& strip, int i, int j, std::size_t begin, std::size_t end,
                                   const Hits& hits) const {
-    const Sample* nearest = nullptr;
-    double least = 0.0, x = 0.0, y = 0.0;
-    for (std::size_t k = begin; k < end; ++k) {
-        const auto column = static_cast<double>(strip.samples[k].place % static_cast<std::size_t>(n_)),
-                   row = static_cast<double>(strip.samples[k].place / static_cast<std::size_t>(n_));
-        const double dx = 0.5 - (column + 0.5) / n_, dy = 0.5 - (row + 0.5) / n_, squared = dx * dx + dy * dy;
-        if (nearest != nullptr && squared >= least) continue;
+    const Sample* nearest = &strip.samples[begin];
+    double least = std::numeric_limits<double>::infinity(), x = 0.0, y = 0.0;
+    for (std::size_t k = begin; k < end && n_ > 1; ++k) {
+        const auto place = static_cast<int>(strip.samples[k].place);
+        const double dx = 0.5 - (place % n_ + 0.5) / n_, dy = 0.5 - (place / n_ + 0.5) / n_,
+                     squared = dx * dx + dy * dy;
+        if (squared >= least) continue;
         nearest = &strip.samples[k];
         least = squared;
         x = dx;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <vector>
 
@@ -73,7 +74,20 @@ private:
         Covered covered;
         int group;
     };
-    struct Strip {
+    // What a strip adds to the counts of the result.
+    struct Found {
+        std::int64_t covered_texels = 0, missed = 0, backward = 0, singular = 0, behind = 0, hopeless = 0, rays = 0;
+        SeenRange heights, thickness;
+        std::vector<float> needs;
+    };
+    // Triangles of the low mesh that were used last: a row comes back to them in the next one.
+    struct Kept {
+        std::int32_t number = kNoTriangle;
+        LowTriangle triangle;
+    };
+    static constexpr std::size_t kKept = 256;
+    // Strips use its memory one after the other.
+    struct Strip : Found {
         std::vector<Covered> covered;  // of samples
         std::vector<Sample> samples;
         std::vector<RayStart> starts;
@@ -82,13 +96,11 @@ private:
         std::vector<std::size_t> chosen;
         std::vector<RayStart> chosen_starts;
         std::vector<RayEnd> chosen_ends;
+        RayCaster::Scratch casts;
         SecondRays::Scratch scratch;
-        std::vector<std::int32_t> ids;      // of the hits of a texel
-        std::int32_t number = kNoTriangle;  // of `triangle`
-        LowTriangle triangle;
-        std::int64_t covered_texels = 0, missed = 0, backward = 0, singular = 0, behind = 0, hopeless = 0, rays = 0;
-        SeenRange heights, thickness;
-        std::vector<float> needs;
+        HighSurface::Seen seen;
+        std::vector<std::int32_t> ids;  // of the hits of a texel
+        std::vector<Kept> kept = std::vector<Kept>(kKept);
     };
     // The samples of a texel that hit.
     struct Hits {
@@ -109,12 +121,14 @@ private:
     void put_surface(Strip& strip, int i, int j, const Hits& hits) const;
     void miss_texel(Strip& strip, int i, int j, std::size_t begin) const;
     void encode_texel(Strip& strip, int i, int j, std::size_t begin, std::size_t end, const Hits& hits) const;
-    void add(Strip& strip, std::int64_t overlaps);
+    [[nodiscard]] std::unique_ptr<Strip> take_strip();
+    void add(std::unique_ptr<Strip> strip, std::int64_t overlaps);
 
     const TransferScene& scene_;
     const int n_;
     TransferredMaps& result_;
     std::mutex mutex_;  // guards the counts in result_, and:
+    std::vector<std::unique_ptr<Strip>> idle_;
     std::vector<float> needs_;
     SeenRange heights_, thickness_;
 };
