@@ -5,14 +5,13 @@
 
 #include <utility>
 
-#include <OpenColorIO/OpenColorIO.h>
-
 #include "color/color.h"
+#include "color/ocio.h"
 #include "threads/guard.h"
 
 namespace tex::inline v1 {
 
-const char* opencolorio_version() { return OCIO_NAMESPACE::GetVersion(); }
+const char* opencolorio_version() { return ocio_version(); }
 
 Result<Image> to_linear(Image image, const ColorOptions& options) {
     return guarded([&]() -> Result<Image> {

@@ -2,6 +2,8 @@
 
 #include <tex/tex.h>
 
+#include <vector>
+
 #include "formats/exr/exr.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/png/png.h"
@@ -13,14 +15,16 @@ namespace tex::inline v1 {
 const char* version() { return TEX_VERSION; }
 
 Runtime runtime() {
-    return {kernel_target_name(),
-            {{"highway", highway_version()},
-             {"libdeflate", inflater_version()},
-             {"libisal", png_inflater_version()},
-             {"libpng", png_version()},
-             {"libzstd", zstd_version()},
-             {"opencolorio", opencolorio_version()},
-             {"openexr", exr_version()}}};
+    Runtime runs{kernel_target_name(),
+                 {{"highway", highway_version()},
+                  {"libdeflate", inflater_version()},
+                  {"libisal", png_inflater_version()},
+                  {"libpng", png_version()},
+                  {"libzstd", zstd_version()},
+                  {"opencolorio", opencolorio_version()},
+                  {"openexr", exr_version()}}};
+    std::erase_if(runs.dependencies, [](const auto& library) { return library.second.empty(); });
+    return runs;
 }
 
 }  // namespace tex::inline v1

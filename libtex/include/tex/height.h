@@ -214,7 +214,7 @@ struct ColorOptions {
 //
 // Errors: bad_option  no such colour space (the reason lists some that exist); the configuration has no
 //                     scene_linear role
-//         io          the configuration cannot be read
+//         io          the configuration cannot be read; unsupported: this libtex was built without OpenColorIO
 //         bad_data    the configuration is damaged
 //         out_of_memory
 [[nodiscard]] TEX_API Result<Image> to_linear(Image image, const ColorOptions& options);
@@ -224,7 +224,7 @@ struct ColorOptions {
 // them again. Errors: those of to_linear() that concern the configuration.
 [[nodiscard]] TEX_API Result<std::vector<std::string>> color_files(const ColorOptions& options);
 
-// The version of OpenColorIO: "2.1.2".
+// The version of OpenColorIO: "2.1.2"; empty in a build without it.
 [[nodiscard]] TEX_API const char* opencolorio_version();
 
 }  // namespace tex::inline v1
