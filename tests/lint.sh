@@ -144,7 +144,7 @@ LC_ALL=C.UTF-8 ban '^.{121}' 'more than 120 columns' "${code[@]}"
 # Finds types of the same name in the same namespace in two files, because the linker uses one of them for both. A class
 # inside a function or another class, or in an unnamed namespace, does not count. clang-format writes the comment that
 # closes a namespace.
-mapfile -t typed < <(select_files '^(libtex|tools)/.*\.(cpp|h)$')
+mapfile -t typed < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '_\(windows\|bsd\|other\)\.cpp$')
 twice=$(awk '
     FNR == 1 { depth = 0 }
     /^(inline )?namespace .*\{$/ { space[++depth] = $(NF - 1) == "namespace" ? "" : $(NF - 1) }
@@ -167,9 +167,9 @@ done <<<"$twice"
 
 # Finds constants and functions of the same name in the unnamed namespaces of sources that some presets compile as one:
 # those of a folder, and tests with the same first letter (tex_by_folder and tex_by_letter in the CMakeLists.txt).
-# Functions with parameters of other types do not count.
+# Functions with parameters of other types do not count. Sources of Windows are not compiled with others.
 mapfile -t unity < <(select_files '^(libtex/src|tools/[a-z]+|tests/(unit|cli))/.*\.cpp$' |
-    grep -vE '/kernels/|^tools/(mesh-)?reader/|src/preview\.cpp$|cli/process\.cpp$')
+    grep -vE '/kernels/|^tools/(mesh-)?reader/|src/preview\.cpp$|cli/process_|_(windows|bsd|other)\.cpp$')
 twice=$(awk '
     FNR == 1 {
         depth = 0

@@ -110,7 +110,7 @@ Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console
     while (build_.root.size() > 1 && build_.root.ends_with('/')) build_.root.pop_back();
     if (build_.root == ".") build_.root.clear();
     build_.manifest = path;
-    build_.state_file = (file.parent_path() / ("." + file.filename().string() + ".state")).string();
+    build_.state_file = cli::state_beside(file.string());
     build_.output_version = manifest.output_version.value_or(cli::kOutputVersion);
     if (build_.output_version > cli::kOutputVersion) {
         throw cli::UsageError(fmt::format("{}: output-version = {}, but this program makes version {}", path,

@@ -2,7 +2,6 @@
 // main() of every command. build-normals has all commands; the others have their own. In a static build (TEX_STATIC),
 // which has one program for all, TEX_COMMAND is empty: the name by which the program was called tells which to run.
 
-#include <cstddef>
 #include <cstdio>
 #include <string_view>
 
@@ -21,12 +20,12 @@ std::string_view wanted(std::string_view called) {
 
 int main(int argc, char** argv) {
     tex::cli::ProcessHost host;
-    const auto count = static_cast<std::size_t>(argc > 0 ? argc - 1 : 0);
-    const tex::cli::ProgramRow* const program = tex::cli::find_program(wanted(argc > 0 ? argv[0] : ""));
+    const tex::cli::Arguments given = tex::cli::own_arguments(argc, argv);
+    const tex::cli::ProgramRow* const program = tex::cli::find_program(wanted(given.empty() ? "" : given.front()));
     if (program == nullptr) {
         std::fputs("libtex: error: this program acts by its name: call it bake-normals, or as another command\n",
                    stderr);
         return static_cast<int>(tex::cli::ExitCode::usage);
     }
-    tex::cli::ProcessHost::end(tex::cli::run(*program, {argv + 1, count}, host));
+    tex::cli::ProcessHost::end(tex::cli::run(*program, given.subspan(given.empty() ? 0 : 1), host));
 }

@@ -12,6 +12,7 @@
 
 #include "files/beside.h"
 #include "files/input_file.h"
+#include "files/path_names.h"
 #include "formats/codecs.h"
 #include "formats/reader/reader_mesh.h"
 #include "formats/texture_rows.h"
@@ -69,7 +70,7 @@ std::string material_text(const Model& model, int material) {
 }
 
 bool is_called_model(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
+    std::string extension = slashed(std::filesystem::path(path).extension());
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return extension == ".gltf" || extension == ".glb";
 }

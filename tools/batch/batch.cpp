@@ -10,13 +10,12 @@
 #include <optional>
 #include <system_error>
 
-#include <sys/stat.h>
-
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include "batch/up_to_date.h"
+#include "cli/file_status.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "tasks/depfile.h"
@@ -152,8 +151,9 @@ private:
 
     // Checked before the work is done. The library checks again when it writes.
     [[nodiscard]] bool would_clobber(const Task& task) const {
-        struct stat status {};
-        return write_.no_clobber && stat(with_level(task.output, 0).c_str(), &status) == 0 && S_ISREG(status.st_mode);
+        if (!write_.no_clobber) return false;
+        const auto status = status_of(with_level(task.output, 0));
+        return status && status->is_regular();
     }
 
     const std::vector<Task>& tasks_;

@@ -10,6 +10,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "files/path_names.h"
 
 namespace tex::cli {
 namespace {
@@ -232,7 +233,7 @@ Glob::Glob(std::string_view text) : text_(text) {
     if (text.size() > kMostOfPattern)
         throw UsageError(fmt::format("'{}' has more than {} bytes", shown(text), kMostOfPattern));
     for (const std::string& one : without_braces(text_)) {
-        if (one.starts_with('/')) {
+        if (is_absolute(one)) {
             throw UsageError(fmt::format("'{}' begins with /; patterns are relative to the root", shown(text)));
         }
         Parts parts;

@@ -8,10 +8,14 @@
 
 #pragma once
 
+#include "cli/command.h"
 #include "cli/exit_code.h"
 #include "cli/host.h"
 
 namespace tex::cli {
+
+// The arguments of main(), the name of the program first: UTF-8 on Windows, and any bytes elsewhere.
+[[nodiscard]] Arguments own_arguments(int argc, char** argv);
 
 class ProcessHost : public Host {
 public:

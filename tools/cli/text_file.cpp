@@ -4,22 +4,19 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
+#include "cli/file_status.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
 
 Result<std::string> read_text_file(const std::string& path, std::size_t most) {
     const bool from_stdin = path == "-";
-    const std::unique_ptr<FILE, int (*)(FILE*)> opened(
-        from_stdin ? nullptr : std::fopen(path.c_str(), "rbe"),
-        [](FILE* file) { return file == nullptr ? 0 : std::fclose(file); });
-    FILE* file = from_stdin ? stdin : opened.get();
+    const ReadFile opened = open_to_read(from_stdin ? "" : path);
+    FILE* file = from_stdin ? standard_input() : opened.get();
     const std::string name = from_stdin ? "standard input" : path;
     const auto failed = [&] { return Error{ErrorCode::io, name, system_reason(errno)}; };
     if (file == nullptr) return failed();
@@ -39,8 +36,9 @@ Result<void> write_text_file(const std::string& path, const std::string& text, c
 }
 
 bool is_special_file(const std::string& path) {
-    struct stat status {};
-    return path == "-" || (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode));
+    if (path == "-") return true;
+    const auto status = status_of(path);
+    return status && status->kind == FileKind::special;
 }
 
 Result<void> write_document(const std::string& path, const std::string& text, WriteOptions options) {

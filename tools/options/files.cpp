@@ -10,11 +10,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
 #include "tasks/find_files.h"
@@ -34,7 +34,7 @@ void FileOptions::add(Command& command, bool joins) {
                                   : "the output of a single input; - is standard output");
     row.completes = Completes::files;
     row.take = [take = row.take](const std::string& text) {  // /dev/stdout and its other names
-        take(named_descriptor(text) == STDOUT_FILENO ? "-" : text);
+        take(named_descriptor(text) == kStandardOutput ? "-" : text);
     };
     command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
         .completes = Completes::directories;
@@ -149,10 +149,10 @@ std::string FileOptions::place(const std::string& pattern, const NameFields& fie
         file.erase(here, 2);
     if (out_dir.empty()) return file;
     const fs::path dir = fs::path(fields.dir).lexically_normal();
-    if (parsed.uses("dir") && (dir.is_absolute() || *dir.begin() == "..")) {
+    if (parsed.uses("dir") && (dir.has_root_path() || *dir.begin() == "..")) {
         throw UsageError(printable(fields.dir + "/" + fields.stem + fields.ext), "its {dir} leads out of --out-dir");
     }
-    return (fs::path(out_dir) / fs::path(file).relative_path()).string();
+    return slashed(fs::path(out_dir) / fs::path(file).relative_path());
 }
 
 }  // namespace tex::cli

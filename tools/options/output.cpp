@@ -14,6 +14,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "files/path_names.h"
 #include "tasks/job.h"
 #include "tasks/name_pattern.h"
 
@@ -168,7 +169,7 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
     }
     if (named) return *named;
     if (output == "-") return made_container().value_or(standard_output);
-    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string extension = slashed(std::filesystem::path(output).extension());
     throw UsageError(printable(output), fmt::format("{}; it must be one of {}, or give --container",
                                                     extension.empty() ? "a name without an extension"
                                                                       : fmt::format("unsupported output format '{}'",

@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "options/files.h"
 #include "tasks/folders.h"
 
@@ -120,7 +121,7 @@ Result<void> RuleOptions::merge_config(const Command& command) {
 
 const Demands& RuleOptions::demands_of(const std::string& path) const {
     if (file_rules_.empty() || path == "-") return demands_;
-    const auto name = path_below(std::filesystem::path(config_).parent_path().string(), path);
+    const auto name = path_below(slashed(std::filesystem::path(config_).parent_path()), path);
     const auto rule = std::find_if(file_rules_.begin(), file_rules_.end(),
                                    [&](const CheckRule& candidate) { return name && candidate.takes(*name); });
     return rule == file_rules_.end() ? demands_ : of_rules_[static_cast<std::size_t>(rule - file_rules_.begin())];

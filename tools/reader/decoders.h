@@ -13,9 +13,8 @@
 
 namespace tex::reader {
 
-// Decoders and encoders open the input again by this name, because the position of its descriptor is the caller's.
-inline constexpr char kInputPath[] = "/proc/self/fd/4";
-static_assert(kInputDescriptor == 4);
+// Does the task, by the decoder or encoder of its format.
+bool read_or_write(const Task& task, ReaderHeader& header);
 
 bool decode_tiff(const Task& task, ReaderHeader& header);
 bool decode_jpeg(const Task& task, ReaderHeader& header);

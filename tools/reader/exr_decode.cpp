@@ -2,10 +2,9 @@
 // A part of an EXR file, decoded by OpenEXR, becomes an uncompressed file with the same channels, levels and
 // attributes.
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <new>
 #include <string_view>
 #include <vector>
@@ -23,6 +22,7 @@
 #include <ImfTiledOutputFile.h>
 
 #include "decoders.h"
+#include "open_input.h"
 
 namespace tex::reader {
 namespace {
@@ -162,10 +162,10 @@ void copy_tiles(Imf::MultiPartInputFile& file, int part, Sink& sink) {
 bool decode_exr(const Task& task, ReaderHeader& header) {
     int part = 0;
     if (!parse_number(std::string_view(task.format).substr(task.format.find('/') + 1), part)) return false;
-    mallopt(M_PERTURB, 0xff);  // new memory holds zeros
-    mallopt(M_ARENA_MAX, 1);   // each arena takes address space
+    settle_memory();
     Imf::setGlobalThreadCount(kThreads);
-    Imf::MultiPartInputFile file(kInputPath, kThreads, false);
+    std::unique_ptr<Imf::IStream> stream;
+    Imf::MultiPartInputFile file = open_exr_input(stream, kThreads);
     if (part < 0 || part >= file.parts()) return refuse(header, ErrorCode::bad_data, "has no such part");
     Sink sink;
     const Imf::Header& described = file.header(part);

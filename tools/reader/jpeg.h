@@ -18,6 +18,15 @@ struct JpegJob {
     ReaderHeader& header;
 };
 
+// A codec that gives its memory back, which matters where it does not have a process of its own.
+template <class Struct>
+struct JpegCodec : Struct {
+    JpegCodec() : Struct{} {}
+    JpegCodec(const JpegCodec&) = delete;
+    JpegCodec& operator=(const JpegCodec&) = delete;
+    ~JpegCodec() { jpeg_destroy(reinterpret_cast<j_common_ptr>(static_cast<Struct*>(this))); }
+};
+
 // Sets up `errors` and returns its address.
 jpeg_error_mgr* handle_errors(jpeg_error_mgr& errors);
 

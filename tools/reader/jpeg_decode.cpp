@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <jerror.h>
-#include <unistd.h>
 #include <cstdio>
 #include <cstring>
 
@@ -13,6 +12,7 @@
 
 #include "decoders.h"
 #include "jpeg.h"
+#include "open_input.h"
 
 namespace tex::reader {
 namespace {
@@ -39,7 +39,7 @@ bool is_one_of(const int (&codes)[N], int code) {
     } else {
         refuse(job.header, ErrorCode::bad_data, std::string("damaged: ") + text);
     }
-    _exit(0);
+    leave(0);
 }
 
 void judge_warning(j_common_ptr codec, int level) {
@@ -91,15 +91,14 @@ jpeg_error_mgr* handle_errors(jpeg_error_mgr& errors) {
 }
 
 bool decode_jpeg(const Task& task, ReaderHeader& header) {
-    FILE* const file = std::fopen(kInputPath, "rbe");
-    if (file == nullptr) return refuse(header, ErrorCode::bad_data, "cannot be opened");
     JpegJob job{task, header};
     jpeg_error_mgr errors{};
-    jpeg_decompress_struct codec{};
+    JpegInput input;
+    JpegCodec<jpeg_decompress_struct> codec;
     codec.err = handle_errors(errors);
     codec.client_data = &job;
     jpeg_create_decompress(&codec);
-    jpeg_stdio_src(&codec, file);
+    if (!open_jpeg_input(codec, input)) return refuse(header, ErrorCode::bad_data, "cannot be opened");
     constexpr unsigned kWholeMarker = 0xffff;
     jpeg_save_markers(&codec, JPEG_COM, kWholeMarker);
     jpeg_save_markers(&codec, JPEG_APP0 + 1, kWholeMarker);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,11 +53,13 @@ bool encode_jpeg(const Task& task, ReaderHeader& header) {
         return refuse(header, ErrorCode::bad_data, "no picture was handed over");
     JpegJob job{task, header};
     jpeg_error_mgr errors{};
-    jpeg_compress_struct codec{};
+    JpegCodec<jpeg_compress_struct> codec;
     codec.err = handle_errors(errors);
     codec.client_data = &job;
     jpeg_create_compress(&codec);
     unsigned char* bytes = nullptr;
+    const std::unique_ptr<unsigned char*, void (*)(unsigned char**)> owner(&bytes,
+                                                                           [](unsigned char** of) { std::free(*of); });
     unsigned long size = 0;
     jpeg_mem_dest(&codec, &bytes, &size);
     codec.image_width = static_cast<JDIMENSION>(picture.width);

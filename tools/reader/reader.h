@@ -43,6 +43,9 @@ using Work = bool (*)(const Task& task, ReaderHeader& header);
 // exit status. --version prints `version`, and what the kernel grants.
 int run_program(const char* name, const char* version, int argc, char** argv, Work work);
 
+// The work alone, under its limits: hands over the header and the result.
+void run_task(const Task& task, Work work);
+
 // Reads a whole argument as a number.
 template <class T>
 bool parse_number(std::string_view text, T& value) {
@@ -52,6 +55,8 @@ bool parse_number(std::string_view text, T& value) {
 
 // Limits memory, time and descriptors, disables the core file, and makes the process end when its parent ends.
 void limit_process(const Task& task);
+// The last of these; without a sandbox (TEX_SANDBOX=OFF), the end of the parent is seen when rows are handed over.
+void end_with_parent();
 
 // The number of bytes that this process may use: Task::memory, or less if the process inherited lower limits.
 std::int64_t memory_limit();
@@ -85,6 +90,16 @@ void put_bytes(std::uint64_t offset, const void* data, std::uint64_t count);
 void put_rows(ReaderHeader& header, const void* rows, int count);
 // Hands over an encoded file. Returns true. Throws std::bad_alloc.
 bool put_file(ReaderHeader& header, const void* data, std::uint64_t bytes);
+// Writes bytes of the result; false if it has no room for them.
+bool write_result(std::uint64_t offset, const void* data, std::uint64_t count);
+// Tells the parent that rows have arrived.
+void put_progress();
+// Makes new memory hold zeros, and heaps take less address space, as far as the C library can do that.
+void settle_memory();
+// Whether a thread could start. The system refuses it also if there is no room for its stack.
+bool has_room_for_a_thread();
+// Ends the process, or what stands for it, after a refusal.
+[[noreturn]] void leave(int status);
 // Reads bytes of the input; false if they are not there.
 bool read_input(std::uint64_t offset, void* to, std::uint64_t count);
 

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "decoders.h"
+#include "open_input.h"
 #include "tiff_tags.h"
 
 namespace tex::reader {
 namespace {
 
 std::string& first_error() {
-    static std::string text;
+    static thread_local std::string text;
     return text;
 }
 
@@ -224,7 +225,8 @@ struct Closer {
 bool decode_tiff(const Task& task, ReaderHeader& header) {
     TIFFSetWarningHandler(nullptr);
     TIFFSetErrorHandler(keep_error);
-    const std::unique_ptr<TIFF, Closer> file(TIFFOpen(kInputPath, "rm"));  // m: the file may change while it is mapped
+    first_error().clear();
+    const std::unique_ptr<TIFF, Closer> file(open_tiff_input());
     if (!file) return refuse_damaged(header);
     TIFF* const tiff = file.get();
     const Layout layout = layout_of(tiff);

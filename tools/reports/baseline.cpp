@@ -6,12 +6,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <iterator>
-#include <memory>
-
-#include <sys/stat.h>
 
 #include <fmt/format.h>
 
+#include "cli/file_status.h"
 #include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
@@ -38,10 +36,9 @@ std::string content_with_map(const CheckReport& report, const std::string& conte
 }  // namespace
 
 std::string content_of(const std::string& path) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(
-        std::fopen(path.c_str(), "rbe"), [](FILE* opened) { return opened == nullptr ? 0 : std::fclose(opened); });
+    const auto status = status_of(path);
+    if (!status || !status->is_regular()) return {};
+    const ReadFile file = open_to_read(path);
     if (!file) return {};
     std::uint64_t hash = 0xcbf29ce484222325u, size = 0;  // FNV-1a
     std::vector<unsigned char> buffer(1 << 16);

@@ -8,6 +8,7 @@
 #include <tex/tex.h>
 
 #include "cli/json.h"
+#include "files/path_names.h"
 #include "reports/findings.h"
 #include "reports/fixes.h"
 
@@ -21,6 +22,8 @@ std::string_view level_of(Severity severity) {
 // A path as a relative reference of RFC 3986.
 std::string uri_of(const std::string& path) {
     constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~/";
+    if (kHasBackslashes && path.size() > 2 && path.substr(1, 2) == ":/")  // C:/a.png becomes file:///C:/a.png
+        return "file:///" + path.substr(0, 3) + uri_of("." + path.substr(2));
     std::string uri = path.starts_with('/') ? "file://" : "";
     for (const char c : path.starts_with("./") ? std::string_view(path).substr(2) : std::string_view(path)) {
         if (kPlain.find(c) != std::string_view::npos) {

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include <sys/stat.h>
+#include "cli/file_status.h"
+#include "files/path_names.h"
 
 namespace tex::cli {
 namespace {
@@ -31,10 +32,10 @@ FileKey place_of_file(const std::string& path) {
     const fs::path whole(path);
     fs::path folder = whole.parent_path(), rest = whole.filename();
     while (true) {
-        struct stat status {};
-        if (stat(folder.empty() ? "." : folder.c_str(), &status) == 0)
-            return {status.st_dev, status.st_ino, rest.lexically_normal().string()};
-        if (folder.empty() || folder == folder.parent_path()) return {0, 0, whole.lexically_normal().string()};
+        if (const auto status = status_of(folder.empty() ? "." : slashed(folder)))
+            return {status->device, status->inode, key_of_name(slashed(rest.lexically_normal()))};
+        if (folder.empty() || folder == folder.parent_path())
+            return {0, 0, key_of_name(slashed(whole.lexically_normal()))};
         rest = folder.filename() / rest;
         folder = folder.parent_path();
     }
@@ -43,12 +44,11 @@ FileKey place_of_file(const std::string& path) {
 std::vector<FileKey> keys_of_file(const std::string& path, int standard) {
     std::vector<FileKey> keys;
     if (path.empty()) return keys;
-    struct stat status {};
-    const int failed = path == "-" ? fstat(standard, &status) : stat(path.c_str(), &status);
-    if (failed == 0 && S_ISREG(status.st_mode)) keys.push_back({status.st_dev, status.st_ino});
+    const auto status = path == "-" ? status_of_open(standard) : status_of(path);
+    if (status && status->is_regular()) keys.push_back({status->device, status->inode});
     if (path == "-") return keys;
     keys.push_back(place_of_file(path));
-    const std::string target = target_of_links(path).string();
+    const std::string target = slashed(target_of_links(path));
     if (target != path) keys.push_back(place_of_file(target));
     return keys;
 }

@@ -8,21 +8,20 @@
 #pragma once
 
 #include <compare>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <sys/types.h>
-#include <unistd.h>
+#include "cli/file_status.h"
 
 namespace tex::cli {
 
 // A file or, if `rest` is not empty, a place in a folder.
 struct FileKey {
-    dev_t device = 0;
-    ino_t inode = 0;
+    std::uint64_t device = 0, inode = 0;
     std::string rest = {};
 
     friend auto operator<=>(const FileKey&, const FileKey&) = default;
@@ -39,13 +38,13 @@ template <class T>
 class FileTable {
 public:
     // Adds a file by all of its keys. Returns what is known about it already; null if it is new.
-    const T* add(const std::string& path, T value, int standard = STDIN_FILENO) {
+    const T* add(const std::string& path, T value, int standard = kStandardInput) {
         return add_keys(keys_of_file(path, standard), std::move(value));
     }
     // The same by the place alone: for files that are replaced there, whatever their names lead to now.
     const T* add_place(const std::string& path, T value) { return add_keys({place_of_file(path)}, std::move(value)); }
     // What is known about a file; null if nothing is.
-    [[nodiscard]] const T* find(const std::string& path, int standard = STDOUT_FILENO) const {
+    [[nodiscard]] const T* find(const std::string& path, int standard = kStandardOutput) const {
         for (const FileKey& key : keys_of_file(path, standard)) {
             if (const auto found = known_.find(key); found != known_.end()) return &found->second;
         }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "files/path_names.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 std::optional<std::string> relative_below(const fs::path& folder, const fs::path& path) {
     const fs::path relative = path.lexically_relative(folder);
     if (relative.empty() || *relative.begin() == "..") return std::nullopt;
-    return relative.string();
+    return slashed(relative);
 }
 
 // Without a slash at its end.
@@ -34,7 +35,7 @@ Result<void> create_folders_of(const std::string& file) {
     const fs::path folder = fs::path(file).parent_path();
     std::error_code error;
     if (!folder.empty()) fs::create_directories(folder, error);
-    return error ? Result<void>(no_folder_error(folder.string(), error)) : Result<void>();
+    return error ? Result<void>(no_folder_error(slashed(folder), error)) : Result<void>();
 }
 
 Error no_folder_error(const std::string& folder, const std::error_code& error) {

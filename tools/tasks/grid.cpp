@@ -14,6 +14,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 #include "tasks/task.h"
 
@@ -62,7 +63,7 @@ bool has_mark(std::string_view text) {
 Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::path::iterator end, const GridPlace& place,
                         std::vector<GridFile>& found) {
     if (next == end) {
-        found.push_back({folder.string(), place});
+        found.push_back({slashed(folder), place});
         return {};
     }
     const std::string component = next->string();
@@ -76,13 +77,13 @@ Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::pat
     for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), last; !error && entry != last;
          entry.increment(error)) {
         GridPlace its = place;
-        const std::string name = entry->path().filename().string();
+        const std::string name = slashed(entry->path().filename());
         if (!match(component, name, its)) continue;
         if (after != end && !entry->is_directory(error)) continue;
         if (Result<void> done = find_below(folder / name, after, end, its, found); !done) return done;
     }
     return error
-               ? Result<void>(Error{ErrorCode::io, folder.string(), "cannot be read: " + system_reason(error.value())})
+               ? Result<void>(Error{ErrorCode::io, slashed(folder), "cannot be read: " + system_reason(error.value())})
                : Result<void>();
 }
 

@@ -10,6 +10,8 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "cli/value.h"
+#include "files/path_names.h"
 
 namespace tex::cli {
 namespace {
@@ -49,8 +51,8 @@ const std::string& known(const std::string& value, const char* reason) {
 NameFields name_fields(const std::string& path) {
     if (path == "-") return {".", "stdin", "", ""};
     const std::filesystem::path parts(path);
-    const std::string dir = parts.parent_path().string();
-    return {dir.empty() ? "." : dir, parts.stem().string(), parts.extension().string(), ""};
+    const std::string dir = slashed(parts.parent_path());
+    return {dir.empty() ? "." : dir, slashed(parts.stem()), slashed(parts.extension()), ""};
 }
 
 std::string extension_of(Container container) {

@@ -10,6 +10,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
@@ -47,17 +48,17 @@ std::string with_tile(const std::string& name, int tile) {
 Result<std::vector<Input>> inputs_of(const std::string& name) {
     if (!has_tile(name)) return std::vector<Input>{{name}};
     const fs::path path(name);
-    if (has_tile(path.parent_path().string()))
+    if (has_tile(slashed(path.parent_path())))
         throw UsageError(
             fmt::format("{}: <UDIM> stands for digits in the name of a file, not of a folder", printable(name)));
     const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
     std::vector<Input> inputs;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        const int tile = tile_of(path.filename().string(), entry->path().filename().string());
-        if (tile != 0) inputs.push_back({(path.parent_path() / entry->path().filename()).string(), tile, name});
+        const int tile = tile_of(slashed(path.filename()), slashed(entry->path().filename()));
+        if (tile != 0) inputs.push_back({slashed(path.parent_path() / entry->path().filename()), tile, name});
     }
-    if (error) return Error{ErrorCode::io, folder.string(), "cannot be read: " + system_reason(error.value())};
+    if (error) return Error{ErrorCode::io, slashed(folder), "cannot be read: " + system_reason(error.value())};
     if (inputs.empty()) return Error{ErrorCode::io, name, "no file has this name with the number of a UDIM tile"};
     std::sort(inputs.begin(), inputs.end(), [](const Input& a, const Input& b) { return a.tile < b.tile; });
     return inputs;

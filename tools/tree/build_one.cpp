@@ -10,44 +10,27 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "cli/file_status.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 #include "tasks/folders.h"
 #include "tasks/name_pattern.h"
 #include "tree/build_run.h"
+#include "tree/checked_file.h"
 
 namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-// A file without a name, in memory, that a texture is in while it is checked. Nothing of it is left, however the run
-// ends.
-class MemoryFile {
-public:
-    MemoryFile() : fd_(memfd_create("texture", MFD_CLOEXEC)) {}
-    MemoryFile(const MemoryFile&) = delete;
-    MemoryFile& operator=(const MemoryFile&) = delete;
-    ~MemoryFile() {
-        if (fd_ >= 0) close(fd_);
-    }
-    [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-    [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", fd_); }
-
-private:
-    const int fd_;
-};
-
 // The output of `maker` that the recipe reads.
 std::string needed_file(const BuildTask& maker, const std::vector<Recipe>& recipes, const Recipe& recipe) {
     const std::vector<std::string> made = files_of(maker, recipes[maker.recipe]);
     for (const std::string& file : recipe.files()) {
-        std::string name = fs::path(file).lexically_normal().string();
+        std::string name = slashed(fs::path(file).lexically_normal());
         if (std::find(made.begin(), made.end(), name) != made.end()) return name;
     }
     return maker.outputs.front();
@@ -56,9 +39,8 @@ std::string needed_file(const BuildTask& maker, const std::vector<Recipe>& recip
 }  // namespace
 
 Error BuildRun::with_remedy(const Error& error, const std::string& output) const {
-    struct stat status {};
-    const bool is_read_only = error.code == ErrorCode::io && stat(output.c_str(), &status) == 0 &&
-                              (status.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0;
+    const auto status = status_of(output);
+    const bool is_read_only = error.code == ErrorCode::io && status && !status->is_writable;
     if (!is_read_only || error.detail == ErrorDetail::no_space) return error;
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
@@ -67,7 +49,7 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
                             double& counted, Outcome& outcome) {
     const Recipe& recipe = recipes_[task.recipe];
     const bool is_checked = recipe.check().is_given();
-    std::deque<MemoryFile> waiting;
+    std::deque<CheckedFile> waiting;
     const auto in_memory = [&waiting] { return waiting.emplace_back().path(); };
     std::vector<WantedOutput> wanted;
     for (const Stale& one : stale) {
@@ -83,7 +65,7 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
                           }};
     if (shares_[task.recipe]) settings.shared = shared_;
     if (recipe.check().compares()) settings.source = in_memory();
-    if (!std::all_of(waiting.begin(), waiting.end(), [](const MemoryFile& file) { return file.is_open(); }))
+    if (!std::all_of(waiting.begin(), waiting.end(), [](const CheckedFile& file) { return file.is_open(); }))
         return Error{ErrorCode::out_of_memory, {}, system_reason(errno)};
     Result<Made> made = make_texture(recipe, contents_.path(task.input), wanted, settings, console_);
     if (!made) return with_remedy(made.error(), wanted.front().path);
@@ -185,7 +167,7 @@ void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale
 // What stat() says about the files that the outputs are made from, except those that this or another builder makes.
 std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task) const {
     const auto is_made = [&](const std::string& file) {
-        const std::string name = fs::path(file).lexically_normal().string();
+        const std::string name = slashed(fs::path(file).lexically_normal());
         return std::any_of(task.needs.begin(), task.needs.end(), [&](std::size_t needed) {
             const BuildTask& maker = work_.tasks[needed];
             const std::vector<std::string> outputs = files_of(maker, recipes_[maker.recipe]);

@@ -13,12 +13,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tex/file.h>
-#include <unistd.h>
 
+#include "cli/file_status.h"
 #include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
@@ -176,7 +175,7 @@ void BuildRun::run_tasks() {
         all_bytes_ += static_cast<double>(task.size);
     }
     std::int64_t memory = options_.memory;
-    if (memory == 0) memory = static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE) / 2;
+    if (memory == 0) memory = physical_memory() / 2;
     TaskQueue queue(std::move(tasks), share_details(memory));
     const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
     const std::size_t workers = std::min({static_cast<std::size_t>(threads), kMostFilesAtOnce, work_.tasks.size()});
@@ -221,8 +220,8 @@ bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& c
         const std::string path = contents_.path(file);
         const Result<Digest> now = contents_.digest(file);
         if (!now || current.find(path) != nullptr) continue;
-        struct stat status {};
-        const bool is_ours = *now == digest && lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+        const auto status = status_of_link(path);
+        const bool is_ours = *now == digest && status && status->is_regular();
         if (files_.is_read(path)) {
             console_.warning(fmt::format("{} is not removed: this run reads it", path));
         } else if (!is_ours) {
@@ -231,7 +230,7 @@ bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& c
             std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
             is_gone = false;
             removes = true;
-        } else if (std::remove(path.c_str()) != 0) {
+        } else if (!remove_file(path)) {
             console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
             is_gone = false;
         } else {

@@ -9,6 +9,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tasks/name_pattern.h"
 #include "tree/tree_files.h"
 
@@ -62,7 +63,7 @@ std::string readers_text(const std::string& name, const std::vector<Recipe>& rec
     for (std::size_t k = 0; k < recipes.size(); ++k) {
         const std::vector<std::string>& files = recipes[k].files();
         const auto is_it = [&](const std::string& file) {
-            return std::filesystem::path(file).lexically_normal().string() == name;
+            return slashed(std::filesystem::path(file).lexically_normal()) == name;
         };
         const bool is_for_all = std::any_of(files.begin(), files.end(), is_it);
         const auto count = std::count_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& task) {
@@ -102,7 +103,7 @@ std::string task_text(const BuildTask& task, const Recipe& recipe) {
 }  // namespace
 
 std::string explanation_of(const std::string& file, const std::vector<Recipe>& recipes, const WorkList& work) {
-    const std::string name = std::filesystem::path(file).lexically_normal().string();
+    const std::string name = slashed(std::filesystem::path(file).lexically_normal());
     const auto task = std::find_if(work.tasks.begin(), work.tasks.end(), [&](const BuildTask& candidate) {
         if (candidate.input == name) return true;
         const std::vector<std::string> files = files_of(candidate, recipes[candidate.recipe]);

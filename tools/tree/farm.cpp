@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <numeric>
 #include <system_error>
 #include <tuple>
@@ -13,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/file_status.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
@@ -20,19 +20,10 @@
 #include "files/system_error.h"
 #include "tree/merge.h"
 #include "tree/shard_report.h"
+#include "tree/state.h"
 
 namespace tex::cli {
-namespace {
-
-namespace fs = std::filesystem;
-
-// Beside the report, until it is there: what the shard has made so far.
-std::string state_beside(const std::string& report) {
-    const fs::path path(report);
-    return (path.parent_path() / ("." + path.filename().string() + ".state")).string();
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void Farm::add(Command& command) {
     command.usage("[MANIFEST] --plan FILE");
@@ -175,7 +166,7 @@ ExitCode Farm::run_shard(const std::vector<Recipe>& recipes, BuildOptions option
             console.error(written.error().message());
             return exit_code(written.error().code);
         }
-        if (check_is_state(options.shard_state)) std::ignore = std::remove(options.shard_state.c_str());
+        if (check_is_state(options.shard_state)) std::ignore = remove_file(options.shard_state);
         return ExitCode::done;
     };
     return build(recipes, work, options, running, console);

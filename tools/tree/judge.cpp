@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
+#include "files/path_names.h"
 
 namespace tex::cli {
 
@@ -34,7 +35,7 @@ Result<Judgement> Judge::judge(const BuildTask& task, const Recipe& recipe) {
     }
     judgement.inputs.digest = inputs.finish();
     // The extension may decide which format an output has by default.
-    const std::string extension = std::filesystem::path(task.input).extension().string();
+    const std::string extension = slashed(std::filesystem::path(task.input).extension());
     for (std::size_t k = 0; k < task.outputs.size(); ++k) {
         const Digest settings =
             digest_of(fmt::format("libtex {}\n{}\n{}", version_, extension, recipe.outputs()[k].settings));

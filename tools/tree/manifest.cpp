@@ -81,7 +81,13 @@ std::string ManifestReader::string_of(const toml::node& node, const std::string&
 // The value of out-dir.
 std::string ManifestReader::folder_of(const toml::node& node) const {
     std::string folder = string_of(node, "out-dir");
-    if (*std::filesystem::path(folder).lexically_normal().begin() == "..") {
+    const std::filesystem::path path(folder);
+    if (path.has_root_path() && !path.is_absolute()) {  // on Windows: "/art", "C:art"
+        fail(node, fmt::format("out-dir: {} depends on the current drive or its current folder; name the drive and the "
+                               "whole path",
+                               printable(folder)));
+    }
+    if (*path.lexically_normal().begin() == "..") {
         fail(node, fmt::format("out-dir: {} leads out of the folder of the manifest; --root sets another folder, and "
                                "an absolute path is not bound to it",
                                printable(folder)));

@@ -153,7 +153,7 @@ std::string Recipe::with_root(const std::string& argument, const Command& comman
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
     // {dir} is that of the input, which is below the root. Files to write get their places later.
     const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !row->writes &&
-                          is_file(value, *row) && !fs::path(value).is_absolute() && !value.starts_with("{dir}");
+                          is_file(value, *row) && !fs::path(value).has_root_path() && !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
 }
 

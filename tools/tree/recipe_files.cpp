@@ -10,6 +10,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tasks/other_parts.h"
 #include "tasks/udim.h"
 #include "tree/recipe.h"
@@ -41,9 +42,9 @@ std::string Recipe::below_out_dir(const std::string& name) const {
     const fs::path whole = (fs::path(rule_.out_dir) / fs::path(name).relative_path()).lexically_normal();
     if (!whole.is_absolute() && *whole.begin() == "..") {
         throw UsageError(
-            fmt::format("the output {} leads out of the folder of the manifest", printable(whole.string())));
+            fmt::format("the output {} leads out of the folder of the manifest", printable(slashed(whole))));
     }
-    return whole.string();
+    return slashed(whole);
 }
 
 // An output that leads out of the root whatever its input is called is a mistake in the manifest.
@@ -51,7 +52,7 @@ void Recipe::check_folder(const NamePattern& name, const std::string& out, const
     const fs::path whole = (fs::path(rule_.out_dir) / fs::path(out).relative_path()).lexically_normal();
     if (!name.uses("dir") && *whole.begin() == "..") {
         fail_at(manifest_.path, place,
-                fmt::format("name: {} leads out of the folder of the manifest", printable(whole.string())));
+                fmt::format("name: {} leads out of the folder of the manifest", printable(slashed(whole))));
     }
 }
 
@@ -62,7 +63,7 @@ void Recipe::check_writes(const ReadyCommand& command) const {
         const fs::path whole = (fs::path(rule_.out_dir) / fs::path(name).relative_path()).lexically_normal();
         if (!pattern.uses("dir") && *whole.begin() == "..") {
             throw UsageError(option,
-                             fmt::format("{} leads out of the folder of the manifest", printable(whole.string())));
+                             fmt::format("{} leads out of the folder of the manifest", printable(slashed(whole))));
         }
     }
 }

@@ -5,15 +5,14 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <filesystem>
 #include <set>
 #include <string_view>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <fmt/format.h>
 
+#include "cli/file_status.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 
 namespace tex::cli {
@@ -135,13 +134,6 @@ bool read_line(std::string_view line, BuildState& state) {
     return fields.ok();
 }
 
-struct OpenFile {
-    ~OpenFile() {
-        if (fd >= 0) close(fd);
-    }
-    const int fd;
-};
-
 std::int64_t now() {
     const auto since = std::chrono::system_clock::now().time_since_epoch();
     return std::chrono::duration_cast<std::chrono::nanoseconds>(since).count();
@@ -150,11 +142,9 @@ std::int64_t now() {
 }  // namespace
 
 std::optional<FileStamp> FileStamp::of(const std::string& path) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0) return std::nullopt;
-    const auto nanoseconds = [](const timespec& time) { return std::int64_t{time.tv_sec} * 1000000000 + time.tv_nsec; };
-    return FileStamp{status.st_dev, status.st_ino, status.st_size, nanoseconds(status.st_mtim),
-                     nanoseconds(status.st_ctim)};
+    const auto status = status_of(path);
+    if (!status) return std::nullopt;
+    return FileStamp{status->device, status->inode, status->size, status->mtime, status->ctime};
 }
 
 std::string BuildState::text(Memos memos_of) const {
@@ -210,38 +200,43 @@ BuildState BuildState::parse(std::string_view text) {
 }
 
 Result<Digest> digest_of_file(const std::string& path) {
-    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+    FileStatus status;
+    const ReadFile file = open_at_once(path, Links::followed, status);
     const auto failed = [&] { return Error{ErrorCode::io, path, system_reason(errno)}; };
-    struct stat status {};
-    if (file.fd < 0 || fstat(file.fd, &status) != 0) return failed();
-    if (!S_ISREG(status.st_mode)) return Error{ErrorCode::io, path, "is not a file"};
+    if (!file) return failed();
+    if (!status.is_regular()) return Error{ErrorCode::io, path, "is not a file"};
     Sha256 sum;
     std::vector<char> buffer(std::size_t{1} << 18);
     while (true) {
-        const ssize_t count = read(file.fd, buffer.data(), buffer.size());
-        if (count < 0 && errno == EINTR) continue;
-        if (count < 0) return failed();
-        if (count == 0) break;
-        sum.add(buffer.data(), static_cast<std::size_t>(count));
+        const auto count = read_from(file.get(), buffer.data(), buffer.size());
+        if (!count) return failed();
+        if (*count == 0) break;
+        sum.add(buffer.data(), *count);
     }
     return sum.finish();
 }
 
 std::string path_from(const std::string& root, const std::string& name) {
-    return root.empty() || name.starts_with('/') ? name : root + "/" + name;
+    return root.empty() || is_absolute(name) ? name : root + "/" + name;
+}
+
+std::string state_beside(const std::string& file) {
+    const std::filesystem::path path(file);
+    return slashed(path.parent_path() / ("." + slashed(path.filename()) + ".state"));
 }
 
 Result<void> check_is_state(const std::string& path) {
-    struct stat status {};
-    if (lstat(path.c_str(), &status) != 0) return {};
+    const auto known = status_of_link(path);
+    if (!known) return {};
     const Error error{ErrorCode::io, path, "is not a file of build-normals, which would replace it; move it away"};
-    if (!S_ISREG(status.st_mode)) return error;
-    const OpenFile file{open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW)};
+    if (!known->is_regular()) return error;
+    FileStatus status;
+    const ReadFile file = open_at_once(path, Links::refused, status);
     char head[kStateName.size()];
-    const ssize_t count = file.fd < 0 ? -1 : read(file.fd, head, sizeof head);
-    if (count < 0) return Error{ErrorCode::io, path, system_reason(errno)};
+    const auto count = file ? read_from(file.get(), head, sizeof head) : std::nullopt;
+    if (!count) return Error{ErrorCode::io, path, system_reason(errno)};
     // After a power cut, the file may be empty or hold zeros.
-    const std::string_view begin(head, static_cast<std::size_t>(count));
+    const std::string_view begin(head, *count);
     const bool is_ours = kStateName.starts_with(begin) || begin.find_first_not_of('\0') == std::string_view::npos;
     return is_ours ? Result<void>() : error;
 }

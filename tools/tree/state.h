@@ -72,6 +72,9 @@ struct BuildState {
 // Errors: io, also if it is no regular file.
 [[nodiscard]] Result<Digest> digest_of_file(const std::string& path);
 
+// The path of the state of what `file` describes: .NAME.state beside it.
+[[nodiscard]] std::string state_beside(const std::string& file);
+
 // Checks that a state may be written to `path`: nothing is there, or a file that begins as a state does, is empty or
 // begins with zeros. Errors: io.
 [[nodiscard]] Result<void> check_is_state(const std::string& path);

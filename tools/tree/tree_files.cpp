@@ -10,12 +10,13 @@
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tree/state.h"
 
 namespace tex::cli {
 namespace {
 
-std::string normal_name(const std::string& file) { return std::filesystem::path(file).lexically_normal().string(); }
+std::string normal_name(const std::string& file) { return slashed(std::filesystem::path(file).lexically_normal()); }
 
 }  // namespace
 

@@ -13,9 +13,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
+#include "cli/file_status.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tree/file_events.h"
 
 namespace tex::cli {
@@ -44,7 +45,7 @@ public:
 
 private:
     [[nodiscard]] static std::string absolute(const std::string& path) {
-        return fs::absolute(path).lexically_normal().string();
+        return slashed(fs::absolute(path).lexically_normal());
     }
     [[nodiscard]] std::string path(const std::string& name) const;
     void add(const std::string& folder);
@@ -90,7 +91,7 @@ private:
 };
 
 std::string Watch::path(const std::string& name) const {
-    if (name.starts_with('/')) return name;
+    if (is_absolute(name)) return name;
     if (options_.root.empty()) return name.empty() ? "." : name;
     return options_.root + "/" + name;
 }
@@ -104,7 +105,7 @@ void Watch::add(const std::string& folder) {
 // Watches the folder of a file or, if there is none, the nearest one around it, in which it may appear.
 void Watch::add_parent_of(const std::string& file) {
     for (fs::path at = fs::path(file).parent_path(); !failure_; at = at.parent_path()) {
-        std::string folder = at.string();
+        std::string folder = slashed(at);
         if (!folder.empty() && !folder.ends_with('/')) folder += '/';
         const auto added = events_.add(path(folder), folder);
         if (!added) failure_ = added.error();
@@ -114,10 +115,10 @@ void Watch::add_parent_of(const std::string& file) {
 
 // If the name is a link, whoever writes the file behind it changes what we read.
 void Watch::add_link(const std::string& name) {
-    struct stat status {};
-    if (lstat(path(name).c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return;
+    const auto status = status_of_link(path(name));
+    if (!status || status->kind != FileKind::link) return;
     std::error_code error;
-    const std::string target = fs::canonical(path(name), error).string();
+    const std::string target = slashed(fs::canonical(path(name), error));
     if (error) return;
     targets_.emplace(target, name);
     add_parent_of(target);
@@ -146,7 +147,7 @@ void Watch::learn_names() {
         inputs_.emplace(task.input, k);
         add_link(task.input);
         for (const std::string& part : tree_->recipes[task.recipe].own_files(task.input, path(task.input))) {
-            const std::string name = fs::path(part).lexically_normal().string();
+            const std::string name = slashed(fs::path(part).lexically_normal());
             inputs_.emplace(name, k);
             add_parent_of(name);
             add_link(name);
@@ -156,12 +157,12 @@ void Watch::learn_names() {
         for (const std::string& output : outputs) {
             outputs_.insert(output);
             fs::path folder = fs::path(output).parent_path();
-            while (!folder.empty() && output_folders_.insert(folder.string()).second) folder = folder.parent_path();
+            while (!folder.empty() && output_folders_.insert(slashed(folder)).second) folder = folder.parent_path();
         }
     }
     for (const Recipe& recipe : tree_->recipes) {
         for (const std::string& file : recipe.files()) {
-            const std::string name = fs::path(file).lexically_normal().string();
+            const std::string name = slashed(fs::path(file).lexically_normal());
             if (outputs_.contains(name) || !named_.insert(name).second) continue;
             add_parent_of(name);
             add_link(name);
@@ -216,7 +217,7 @@ void Watch::build_what_is_due() {
 bool Watch::is_input(const std::string& name) const {
     if (named_.contains(name)) return true;
     if (inputs_.contains(name) && !outputs_.contains(name)) return true;
-    if (!tree_ || name.starts_with('/') || outputs_.contains(name)) return false;
+    if (!tree_ || is_absolute(name) || outputs_.contains(name)) return false;
     return std::any_of(tree_->recipes.begin(), tree_->recipes.end(),
                        [&](const Recipe& recipe) { return recipe.takes(name); });
 }
@@ -226,7 +227,7 @@ bool Watch::is_folder_of_inputs(const std::string& name) const {
     const std::string folder = name + "/";
     const auto is_in_folder = [&](const std::string& file) { return file.starts_with(folder); };
     if (std::any_of(named_.begin(), named_.end(), is_in_folder)) return true;
-    if (!tree_ || name.starts_with('/')) return false;
+    if (!tree_ || is_absolute(name)) return false;
     const std::vector<BuildTask>& tasks = tree_->work.tasks;
     if (std::any_of(tasks.begin(), tasks.end(), [&](const BuildTask& task) { return is_in_folder(task.input); }))
         return true;

@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tasks/file_table.h"
 #include "tasks/name_pattern.h"
 #include "tree/state.h"
@@ -31,7 +32,7 @@ std::string in_lower_case(std::string text) {
 std::vector<std::string> output_folders(const std::vector<Recipe>& recipes) {
     std::vector<std::string> folders;
     for (const Recipe& recipe : recipes) {
-        const std::string folder = fs::path(recipe.rule().out_dir).lexically_normal().string();
+        const std::string folder = slashed(fs::path(recipe.rule().out_dir).lexically_normal());
         if (!folder.empty() && folder != ".") folders.push_back(folder.ends_with('/') ? folder : folder + "/");
     }
     std::erase_if(folders, [&](const std::string& folder) {
@@ -165,7 +166,7 @@ void Lister::find_needs() {
     std::vector<std::vector<std::size_t>> needs(recipes_.size());
     for (std::size_t k = 0; k < recipes_.size(); ++k) {
         for (const std::string& file : recipes_[k].files()) {
-            const auto maker = makers_.find(fs::path(file).lexically_normal().string());
+            const auto maker = makers_.find(slashed(fs::path(file).lexically_normal()));
             if (maker == makers_.end()) continue;
             needs[k].push_back(maker->second);
             needed_[k].insert(work_.tasks[maker->second].recipe);

@@ -2,22 +2,18 @@
 
 #include "files/beside.h"
 
-#include <filesystem>
-#include <system_error>
+#include <optional>
 
 #include "files/input_file.h"
+#include "files/path_names.h"
 
 namespace tex::inline v1 {
 
-std::string beside(const std::string& path, const std::string& name) {
-    const std::size_t slash = path.rfind('/');
-    return slash == std::string::npos ? name : path.substr(0, slash + 1) + name;
-}
+std::string beside(const std::string& path, const std::string& name) { return path.substr(0, name_begin(path)) + name; }
 
 Result<void> check_regular(const std::string& path) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return {};
+    const std::optional<FileStatus> status = FileStatus::of(path);
+    if (!status || status->kind == FileKind::regular) return {};
     return Error{ErrorCode::io, path, "is not a regular file"};
 }
 

@@ -2,10 +2,6 @@
 
 #include "files/input_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -18,17 +14,13 @@
 namespace tex::inline v1 {
 namespace {
 
-// read(2) and pread(2) refuse or shorten larger counts.
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
-
-// Calls `once(data, count)` (a read) until all `count` bytes are there, the file ends, or a call fails.
+// Calls `once(data, count, done)` (a read) until all `count` bytes are there, the file ends, or a call fails.
 template <class Once>
 Result<std::size_t> read_fully(const std::string& path, std::byte* data, std::size_t count, const Once& once) {
     std::size_t done = 0;
     while (done < count) {
-        const ssize_t n = once(data + done, std::min(count - done, kMostAtOnce), done);
+        const std::ptrdiff_t n = once(data + done, count - done, done);
         if (n == 0) break;
-        if (n < 0 && errno == EINTR) continue;
         if (n < 0) return system_error(path, errno, "cannot be read");
         done += static_cast<std::size_t>(n);
     }
@@ -39,37 +31,12 @@ Result<Descriptor> open_descriptor(const std::string& path) {
     if (path.find('\0') != std::string::npos) {
         return Error{ErrorCode::io, path, "the name holds a zero byte"};
     }
-    int fd = -1;
-    do {
-        fd = path == "-" ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                         : ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
-    } while (fd < 0 && errno == EINTR);
-    if (fd < 0) return system_error(path, errno);
-    return Descriptor(fd);
+    Descriptor file = open_for_reading(path);
+    if (!file) return system_error(path, errno);
+    return file;
 }
 
 }  // namespace
-
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-    if (this != &other) {
-        reset();
-        fd_ = other.release();
-    }
-    return *this;
-}
-
-void Descriptor::reset() {
-    if (fd_ >= 0) ::close(fd_);
-    fd_ = -1;
-}
-
-std::optional<FileVersion> FileVersion::of(const std::string& path) {
-    struct stat status {};
-    if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
-    const auto nanoseconds = [](const timespec& time) { return std::int64_t{time.tv_sec} * 1000000000 + time.tv_nsec; };
-    return FileVersion{status.st_dev, status.st_ino, status.st_size, nanoseconds(status.st_mtim),
-                       nanoseconds(status.st_ctim)};
-}
 
 Result<InputFile> InputFile::open(const std::string& path) {
     return guarded([&]() -> Result<InputFile> {
@@ -79,20 +46,20 @@ Result<InputFile> InputFile::open(const std::string& path) {
         if (!fd) return std::move(fd).error();
         file.fd_ = std::move(*fd);
 
-        struct stat status {};
-        if (fstat(file.fd_.get(), &status) != 0) return system_error(path, errno);
-        if (S_ISDIR(status.st_mode)) return Error{ErrorCode::io, path, "is a directory; name its files"};
+        const std::optional<FileStatus> status = FileStatus::of(file.fd_.get());
+        if (!status) return system_error(path, errno);
+        if (status->kind == FileKind::folder) return Error{ErrorCode::io, path, "is a directory; name its files"};
         // /dev/zero has no end, and a disk is not a picture. A user who connects standard input to a terminal or
         // /dev/null does so on purpose.
-        if (path != "-" && (S_ISBLK(status.st_mode) || S_ISCHR(status.st_mode)) && path != "/dev/stdin") {
+        if (path != "-" && status->kind == FileKind::device && path != "/dev/stdin") {
             return Error{ErrorCode::io, path, "is a device, not a file"};
         }
         // Files of /proc and /sys are regular, but state a size of 0: their size is known only after reading.
-        if (S_ISREG(status.st_mode) && status.st_size > 0) {
-            const off_t at = lseek(file.fd_.get(), 0, SEEK_CUR);
+        if (status->kind == FileKind::regular && status->version.size > 0) {
+            const std::int64_t at = position_of(file.fd_.get());
             if (at >= 0) {
                 file.start_ = at;
-                file.size_ = std::max<std::int64_t>(0, status.st_size - at);
+                file.size_ = std::max<std::int64_t>(0, status->version.size - at);
             }
         }
         if (Result<void> head = file.read_head(); !head) return head.error();
@@ -115,10 +82,9 @@ Result<InputFile> InputFile::from_descriptor(const std::string& name, Descriptor
         file.path_ = name;
         file.fd_ = std::move(fd);
         file.start_ = start;
-        struct stat status {};
-        if (fstat(file.fd_.get(), &status) != 0 || lseek(file.fd_.get(), start, SEEK_SET) < 0)
-            return system_error(name, errno);
-        file.size_ = std::max<std::int64_t>(0, status.st_size - start);
+        const std::optional<FileStatus> status = FileStatus::of(file.fd_.get());
+        if (!status || !set_position(file.fd_.get(), start)) return system_error(name, errno);
+        file.size_ = std::max<std::int64_t>(0, status->version.size - start);
         if (Result<void> head = file.read_head(); !head) return head.error();
         return file;
     });
@@ -164,7 +130,7 @@ Result<std::size_t> InputFile::read(std::byte* data, std::size_t count) {
     position_ += known;
     Result<std::size_t> more =
         read_fully(path_, data + known, count - known,
-                   [&](std::byte* at, std::size_t n, std::size_t) { return ::read(fd_.get(), at, n); });
+                   [&](std::byte* at, std::size_t n, std::size_t) { return read_some(fd_.get(), at, n); });
     if (!more) return more;
     return known + *more;
 }
@@ -172,7 +138,7 @@ Result<std::size_t> InputFile::read(std::byte* data, std::size_t count) {
 Result<void> InputFile::rewind() {
     position_ = 0;
     const auto after_head = start_ + static_cast<std::int64_t>(head_.size());
-    if (!memory_ && lseek(fd_.get(), after_head, SEEK_SET) < 0) return system_error(path_, errno);
+    if (!memory_ && !set_position(fd_.get(), after_head)) return system_error(path_, errno);
     return {};
 }
 
@@ -184,7 +150,7 @@ Result<std::size_t> InputFile::read_at(std::int64_t offset, std::byte* data, std
         return n;
     }
     return read_fully(path_, data, count, [&](std::byte* at, std::size_t n, std::size_t done) {
-        return ::pread(fd_.get(), at, n, start_ + offset + static_cast<std::int64_t>(done));
+        return read_some_at(fd_.get(), static_cast<std::uint64_t>(start_ + offset) + done, at, n);
     });
 }
 

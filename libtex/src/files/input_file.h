@@ -16,40 +16,9 @@
 #include <tex/file.h>
 #include <tex/types.h>
 
+#include "files/descriptor.h"
+
 namespace tex::inline v1 {
-
-// Owns a file descriptor; -1 means none.
-class Descriptor {
-public:
-    Descriptor() = default;
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
-    Descriptor& operator=(Descriptor&& other) noexcept;
-    ~Descriptor() { reset(); }
-
-    [[nodiscard]] int get() const { return fd_; }
-    explicit operator bool() const { return fd_ >= 0; }
-    int release() {
-        const int fd = fd_;
-        fd_ = -1;
-        return fd;
-    }
-    void reset();
-
-private:
-    int fd_ = -1;
-};
-
-// What stat() says about a regular file. While it stays the same, so do the contents.
-struct FileVersion {
-    std::uint64_t device = 0, inode = 0;
-    std::int64_t size = 0;
-    std::int64_t mtime = 0, ctime = 0;  // in nanoseconds
-
-    friend bool operator==(const FileVersion&, const FileVersion&) = default;
-    // Nothing if the path leads to no regular file.
-    static std::optional<FileVersion> of(const std::string& path);
-};
 
 // A file open for reading: a regular file, a FIFO, a socket, standard input ("-"), or bytes in memory. read() returns
 // the bytes in order. If size() is known, read_at() reads from any offset without changing the position of read().

@@ -2,11 +2,10 @@
 
 #include "files/output_file.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <utility>
 
+#include "files/descriptor.h"
 #include "threads/guard.h"
 
 namespace tex::inline v1 {
@@ -18,8 +17,8 @@ constexpr std::size_t kWrittenAtOnce = std::size_t{1} << 18;
 
 // Whether `path` is a FIFO or a device, whose bytes AtomicFile holds in memory anyway.
 bool is_written_through(const std::string& path) {
-    struct stat status {};
-    return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+    const std::optional<FileStatus> status = FileStatus::of(path);
+    return status && status->kind != FileKind::regular && status->kind != FileKind::folder;
 }
 
 }  // namespace

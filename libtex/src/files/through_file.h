@@ -3,8 +3,6 @@
 
 #pragma once
 
-#include <unistd.h>
-
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
@@ -26,7 +24,7 @@ namespace tex::inline v1 {
 // The descriptor that "-", /dev/stdout, /dev/fd/N or /proc/self/fd/N names. It is written directly even if it refers to
 // a regular file, because the shell that opened the file keeps it open. (Inline, so that the commands can use it too.)
 inline std::optional<int> named_descriptor(std::string_view path) {
-    if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
+    if (path == "-" || path == "/dev/stdout") return kStandardOutput;
     for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
         if (!path.starts_with(folder)) continue;
         path.remove_prefix(folder.size());

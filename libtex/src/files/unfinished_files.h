@@ -17,7 +17,7 @@
 #pragma once
 
 #include <climits>
-#include <csignal>
+#include <cstddef>
 #include <string>
 
 namespace tex::inline v1 {
@@ -31,7 +31,8 @@ public:
     NameSection& operator=(const NameSection&) = delete;
 
 private:
-    sigset_t before_{};
+    struct Signals;  // which the thread let through before
+    alignas(std::max_align_t) std::byte before_[128];
 };
 
 // Memory for a name. It is allocated before the section in which the file gets its name.

@@ -2,8 +2,6 @@
 
 #include "formats/reader/reader.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <climits>

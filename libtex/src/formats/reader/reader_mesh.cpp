@@ -6,6 +6,7 @@
 #include <cerrno>
 
 #include "files/input_file.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 #include "formats/reader/reader_process.h"
 
@@ -15,7 +16,7 @@ namespace {
 // The extension in lower-case letters, or "-" if the path has no plain one.
 std::string extension_hint(const std::string& path) {
     const std::size_t dot = path.rfind('.');
-    if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return "-";
+    if (dot == std::string::npos || name_begin(path) > dot) return "-";
     std::string hint = path.substr(dot + 1);
     for (char& c : hint) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     const bool is_plain = !hint.empty() && hint.size() <= 8 && std::all_of(hint.begin(), hint.end(), [](char c) {

@@ -2,104 +2,18 @@
 
 #include "formats/reader/reader_process.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <signal.h>
-#include <sys/ioctl.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <optional>
 #include <utility>
 
+#include "files/nameless_file.h"
 #include "files/system_error.h"
 #include "formats/reader/reader.h"
-#include "formats/reader/reader_spawn.h"
-#include "threads/guard.h"
 
 namespace tex::inline v1 {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-enum class News { strip, end, late };
-
-// The time is up. But the caller may have begun to wait too late, after long work on rows that had already arrived. If
-// the process has ended by now, that counts as its end. Anything else that it still sends does not prolong the wait.
-News last_news(int progress) {
-    int there = 0;
-    if (ioctl(progress, FIONREAD, &there) != 0) return News::late;
-    char strips[256];
-    while (there > 0) {
-        const ssize_t n = read(progress, strips, std::min(sizeof strips, static_cast<std::size_t>(there)));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) break;
-        there -= static_cast<int>(n);
-    }
-    pollfd poll_for{progress, POLLIN, 0};
-    const bool has_ended = poll(&poll_for, 1, 0) > 0 && (poll_for.revents & POLLHUP) != 0;
-    return has_ended ? News::end : News::late;
-}
-
-// Waits for one of three events: a strip of rows is there; the socket has ended, because every process that holds it is
-// gone; or the time is up.
-News wait_for_news(int progress, Clock::time_point deadline) {
-    for (;;) {
-        const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-        if (left <= 0) return last_news(progress);
-        pollfd poll_for{progress, POLLIN, 0};
-        const int ready = poll(&poll_for, 1, static_cast<int>(std::min<long long>(left + 1, 60'000)));
-        if (ready < 0 && errno != EINTR) return News::late;
-        if (ready <= 0) continue;
-        char strips[256];
-        const ssize_t n = read(progress, strips, sizeof strips);
-        if (n > 0) return News::strip;
-        if (n == 0) return News::end;
-        if (errno != EINTR) return News::late;
-    }
-}
-
-std::string does(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
-
-// Whether this process is limited to less memory than the reader may use. The reader inherits that limit.
-bool is_short_of_memory(std::int64_t reader_memory) {
-    rlimit now{};
-    return getrlimit(RLIMIT_AS, &now) == 0 &&
-           now.rlim_cur < static_cast<rlim_t>(std::max<std::int64_t>(reader_memory, 0));
-}
-
-// `begun`: the reader was ready to look at the file.
-Error abnormal_end(const ReaderJob& job, const std::string& program, Ending ending, bool begun, bool is_short) {
-    constexpr int kNotLoaded = 127;  // exit status of the dynamic loader and of shells
-    const std::string signal = " (signal " + std::to_string(ending.signal) + ")";
-    if (ending.signal == SIGKILL) {
-        return {ErrorCode::out_of_memory, job.path, does(job) + " was killed by the system: out of memory?"};
-    }
-    if (ending.signal != 0 && is_short) {
-        return {ErrorCode::out_of_memory, job.path,
-                does(job) + " crashed" + signal + "; it has little memory (ulimit -v)"};
-    }
-    if (ending.signal != 0 && !begun) {
-        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be started" + signal};
-    }
-    if (ending.signal != 0) return {ErrorCode::bad_data, job.path, does(job) + " crashed on this file" + signal};
-    if (ending.status == kNotLoaded) {
-        return {ErrorCode::io, job.path, "the reader program " + program + " cannot be loaded"};
-    }
-    if (ending.status == kNoRoom) {
-        return {ErrorCode::out_of_memory, job.path,
-                does(job) + " cannot hand over its result: no memory, or a limit on the size of files (ulimit -f)"};
-    }
-    return {ErrorCode::bad_data, job.path,
-            does(job) + " ended without a result (exit status " + std::to_string(ending.status) + ")"};
-}
 
 // The reason that the reader gives, which may contain anything, as one printable line without the name that the reader
 // has for the file.
@@ -115,6 +29,10 @@ std::string clean_reason(const ReaderHeader& header) {
     return reason.empty() ? "the decoder gave no reason" : reason;
 }
 
+}  // namespace
+
+std::string worker_of(const ReaderJob& job) { return job.verb == "encode" ? "the encoder" : "the decoder"; }
+
 Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
     ErrorCode code = ErrorCode::bad_data;
     for (const ErrorCode known : {ErrorCode::io, ErrorCode::unsupported, ErrorCode::out_of_memory}) {
@@ -123,14 +41,11 @@ Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
     return {code, job.path, clean_reason(header)};
 }
 
-}  // namespace
-
 Error nonsense(const std::string& path) { return {ErrorCode::bad_data, path, "the decoder handed over nonsense"}; }
 
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count) {
     while (count > 0) {
-        const ssize_t n = pread(fd, to, count, static_cast<off_t>(offset));
-        if (n < 0 && errno == EINTR) continue;
+        const std::ptrdiff_t n = read_some_at(fd, offset, to, count);
         if (n <= 0) return false;
         to += n;
         offset += static_cast<std::uint64_t>(n);
@@ -140,8 +55,8 @@ bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count
 }
 
 Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header) {
-    struct stat status {};
-    const auto held = fstat(result, &status) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+    const std::optional<FileStatus> status = FileStatus::of(result);
+    const auto held = status ? static_cast<std::uint64_t>(status->version.size) : 0;
     if (held < kReaderDataOffset || header.bytes > held - kReaderDataOffset) return nonsense(path);
     std::vector<std::byte> bytes(header.bytes);
     if (!read_exactly(result, kReaderDataOffset, bytes.data(), bytes.size())) return nonsense(path);
@@ -150,8 +65,7 @@ Result<std::vector<std::byte>> answered_bytes(const std::string& path, int resul
 
 bool write_exactly(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-        const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (n < 0 && errno == EINTR) continue;
+        const std::ptrdiff_t n = write_some_at(fd, offset, bytes.data(), bytes.size());
         if (n <= 0) return false;
         offset += static_cast<std::uint64_t>(n);
         bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -171,96 +85,9 @@ Result<int> descriptor_of(InputFile& file, const ReadOptions& options, Descripto
 }
 
 Result<Descriptor> memory_file(const std::string& path) {
-    Descriptor file(memfd_create("libtex", MFD_CLOEXEC | MFD_ALLOW_SEALING));
-    if (!file || fcntl(file.get(), F_ADD_SEALS, F_SEAL_SHRINK) != 0)
-        return system_error(path, errno, "a file in memory");
+    Descriptor file = file_in_memory();
+    if (!file) return system_error(path, errno, "a file in memory");
     return file;
-}
-
-struct ReaderProcess::State {
-    ReaderJob job;
-    std::string program;
-    int seconds = 1;
-    std::int64_t memory = 0;  // bytes
-    Clock::time_point deadline;
-    Descriptor progress;
-    ReaderChild child;
-    bool has_spoken = false;  // the header is there
-    bool in_time = true;
-    std::optional<Ending> ending;
-
-    [[nodiscard]] ReaderHeader read_header(bool& whole) const {
-        ReaderHeader header;
-        const ssize_t got = pread(job.result, &header, sizeof header, 0);
-        whole = got == static_cast<ssize_t>(sizeof header) && header.magic == kReaderMagic;
-        return header;
-    }
-    // Waits for the next strip; false if the process has ended.
-    bool wait() {
-        if (ending) return false;
-        const News news = wait_for_news(progress.get(), deadline);
-        has_spoken = has_spoken || news == News::strip;
-        if (news == News::strip) return true;
-        in_time = news == News::end;
-        ending = child.end();
-        return false;
-    }
-};
-
-ReaderProcess::ReaderProcess(std::unique_ptr<State> state) : state_(std::move(state)) {}
-ReaderProcess::ReaderProcess(ReaderProcess&&) noexcept = default;
-ReaderProcess& ReaderProcess::operator=(ReaderProcess&&) noexcept = default;
-ReaderProcess::~ReaderProcess() = default;
-
-Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
-    return guarded([&]() -> Result<ReaderProcess> {
-        const Result<std::string> program = find_reader(options, job.program);
-        if (!program) return program.error().of(job.path);
-        auto state = std::make_unique<State>();
-        state->job = job;
-        state->program = *program;
-        state->seconds = std::max(1, options.reader_timeout);
-        state->memory = options.reader_memory;
-        state->deadline = Clock::now() + std::chrono::seconds(state->seconds);
-
-        int ends[2];
-        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-            return system_error(job.path, errno, "a pair of sockets");
-        state->progress = Descriptor(ends[0]);
-        const Descriptor childs_end(ends[1]);
-        const ReaderLimits limits{options.max_texels, options.reader_memory, state->seconds};
-        if (const int failed = start_reader(*program, job, childs_end.get(), limits, state->child); failed != 0)
-            return system_error(job.path, failed, ("the reader program " + *program + " cannot be started").c_str());
-        return ReaderProcess(std::move(state));
-    });
-}
-
-Result<ReaderHeader> ReaderProcess::wait_for_rows(std::uint64_t rows) {
-    for (;;) {
-        bool whole = false;
-        const ReaderHeader header = state_->has_spoken ? state_->read_header(whole) : ReaderHeader();
-        if (whole && header.rows_done >= rows) return header;
-        if (!state_->wait()) return finish();
-    }
-}
-
-Result<ReaderHeader> ReaderProcess::finish() {
-    while (state_->wait()) {
-    }
-    return guarded([&]() -> Result<ReaderHeader> {
-        const ReaderJob& job = state_->job;
-        if (!state_->in_time || state_->ending->signal == SIGXCPU) {
-            return Error{ErrorCode::bad_data, job.path,
-                         does(job) + " did not end within " + std::to_string(state_->seconds) + " s"};
-        }
-        bool whole = false;
-        const ReaderHeader header = state_->read_header(whole);
-        if (whole && header.state == ReaderState::refused) return reported_error(job, header);
-        if (!whole || header.state != ReaderState::done || state_->ending->signal != 0) {
-            return abnormal_end(job, state_->program, *state_->ending, whole, is_short_of_memory(state_->memory));
-        }
-        return header;
-    });
 }
 
 Result<ReaderHeader> run_reader(const ReaderJob& job, const ReadOptions& options) {

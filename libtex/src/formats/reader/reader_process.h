@@ -33,6 +33,12 @@ Result<int> descriptor_of(InputFile& file, const ReadOptions& options, Descripto
 // The bytes that a process has handed over at kReaderDataOffset. Errors: bad_data (they are not there).
 Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header);
 
+// "the encoder" or "the decoder", for messages.
+std::string worker_of(const ReaderJob& job);
+
+// The Error that a reader reports in its header.
+Error reported_error(const ReaderJob& job, const ReaderHeader& header);
+
 // The Error for a result that is impossible.
 Error nonsense(const std::string& path);
 

@@ -2,9 +2,6 @@
 
 #include "formats/reader/reader_rows.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -17,6 +14,7 @@
 
 #include <half.h>
 
+#include "files/nameless_file.h"
 #include "files/system_error.h"
 #include "formats/claims.h"
 #include "formats/normal_mark.h"
@@ -303,15 +301,8 @@ Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
 Result<void> ReaderRows::decode(int first, int count, std::byte* rows) {
     if (Result<void> there = peek(first, count, rows); !there) return there;
     // Rows that have been read are no longer needed in memory. If they cannot be released, they stay.
-    const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    const auto page_of = [&](int row) {  // begins at or before the row, but never within the header
-        const std::uint64_t offset = kReaderDataOffset + static_cast<std::uint64_t>(row) * row_bytes();
-        return std::max(offset / page * page, (kReaderDataOffset + page - 1) / page * page);
-    };
-    if (const std::uint64_t begin = page_of(first), end = page_of(first + count); end > begin) {
-        [[maybe_unused]] const int failed = fallocate(result_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
-                                                      static_cast<off_t>(begin), static_cast<off_t>(end - begin));
-    }
+    const auto offset_of = [&](int row) { return kReaderDataOffset + static_cast<std::uint64_t>(row) * row_bytes(); };
+    release_pages(result_.get(), offset_of(first), offset_of(first + count), kReaderDataOffset);
     return {};
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <spawn.h>
 #include <sys/types.h>
 
 namespace tex::inline v1 {
@@ -17,5 +18,12 @@ namespace tex::inline v1 {
 // reader. Returns 0 or an errno.
 int spawn_reader(const std::string& program, std::vector<std::string> arguments, std::span<const int> descriptors,
                  pid_t& child);
+
+// The path of the binary that contains this code.
+std::string own_binary();
+
+// Make the new program close every descriptor from `first` on: by an action, or by a flag of posix_spawn().
+int close_others(posix_spawn_file_actions_t& actions, int first);
+short flags_that_close_others();
 
 }  // namespace tex::inline v1

@@ -2,12 +2,14 @@
 
 #include "files/unfinished_files.h"
 
+#include <signal.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cassert>
 #include <cstring>
+#include <new>
 
 namespace tex::inline v1 {
 
@@ -59,8 +61,13 @@ void block_signals(sigset_t* before) {
 
 }  // namespace
 
+struct NameSection::Signals {
+    sigset_t set;
+};
+
 NameSection::NameSection() {
-    block_signals(&before_);
+    static_assert(sizeof(Signals) <= sizeof before_);
+    block_signals(&(new (before_) Signals)->set);
     if ((UnfinishedFiles::sections.fetch_add(1) & UnfinishedFiles::kClosed) == 0) return;
     UnfinishedFiles::sections.fetch_sub(1);
     wait_for_the_end();
@@ -68,7 +75,7 @@ NameSection::NameSection() {
 
 NameSection::~NameSection() {
     UnfinishedFiles::sections.fetch_sub(1);
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    pthread_sigmask(SIG_SETMASK, &std::launder(reinterpret_cast<Signals*>(before_))->set, nullptr);
 }
 
 UnfinishedFile::UnfinishedFile() : place_(UnfinishedFiles::take()) {}

@@ -5,31 +5,16 @@
 #include <seccomp.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <initializer_list>
-#include <limits>
 
 #include "reader.h"
 
 namespace tex::reader {
 namespace {
-
-// Lowers a limit for good. Returns what then applies.
-rlim_t limit(__rlimit_resource what, std::int64_t value) {
-    rlimit now{};
-    if (getrlimit(what, &now) != 0) return RLIM_INFINITY;
-    const rlim_t lowest = std::min(now.rlim_max, static_cast<rlim_t>(value));
-    const rlimit limits{lowest, lowest};
-    setrlimit(what, &limits);
-    return lowest;
-}
-
-rlim_t highest = RLIM_INFINITY;  // the result of memory_limit()
 
 // The calls that decoders, the C library, the loader and threads make. Every other call fails with EPERM.
 constexpr int kAllowed[] = {
@@ -138,22 +123,7 @@ bool allow_conditional(scmp_filter_ctx filter) {
 
 }  // namespace
 
-void limit_process(const Task& task) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != task.parent) _exit(1);  // it ended before this call
-    constexpr int kDescriptors = 64;
-#ifndef TEX_READER_SHADOW
-    highest = limit(RLIMIT_AS, task.memory);
-#endif
-    highest = std::min(highest, limit(RLIMIT_FSIZE, task.memory));
-    limit(RLIMIT_CPU, task.seconds + 1);
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_NOFILE, kDescriptors);
-}
-
-std::int64_t memory_limit() {
-    return static_cast<std::int64_t>(std::min<rlim_t>(highest, std::numeric_limits<std::int64_t>::max()));
-}
+void end_with_parent() { prctl(PR_SET_PDEATHSIG, SIGKILL); }
 
 bool filter_calls() {
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));

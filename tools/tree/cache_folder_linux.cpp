@@ -20,6 +20,7 @@
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "files/system_error.h"
 #include "options/files.h"
 #include "tasks/folders.h"
@@ -140,7 +141,7 @@ Result<void> open_cache_folder(const std::string& folder, bool is_read_only) {
     std::error_code error;
     if (!fs::exists(folder, error)) {
         if (is_read_only) return {};
-        if (auto created = create_folders_of((fs::path(folder) / "").string()); !created) return created;
+        if (auto created = create_folders_of(slashed(fs::path(folder) / "")); !created) return created;
     }
     const Opened cache(open(folder.c_str(), kFolderFlags));
     if (!cache) return Error{ErrorCode::io, folder, system_reason(errno)};

@@ -2,9 +2,7 @@
 
 #include "formats/reader/reader_spawn.h"
 
-#include <dlfcn.h>
 #include <fcntl.h>
-#include <link.h>
 #include <signal.h>
 #include <spawn.h>
 #include <unistd.h>
@@ -22,16 +20,8 @@ namespace {
 
 // The folder of the binary that contains this code: libtex, or the program that it is linked into.
 std::string own_folder() {
-    Dl_info info{};
-    link_map* map = nullptr;
-    static const char anchor = 0;
-    std::string object = "/proc/self/exe";
-    if (dladdr1(&anchor, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0 && map != nullptr &&
-        map->l_name != nullptr && map->l_name[0] != '\0') {
-        object = map->l_name;
-    }
     char resolved[PATH_MAX];
-    if (realpath(object.c_str(), resolved) == nullptr) return {};
+    if (realpath(own_binary().c_str(), resolved) == nullptr) return {};
     std::string folder = resolved;
     return folder.erase(folder.rfind('/'));
 }
@@ -120,7 +110,7 @@ int spawn_reader(const std::string& program, std::vector<std::string> arguments,
         const int source = from[static_cast<std::size_t>(fd - kFirstDescriptor)].get();
         check(posix_spawn_file_actions_adddup2(&plan.actions, source, fd));
     }
-    check(posix_spawn_file_actions_addclosefrom_np(&plan.actions, free));
+    check(close_others(plan.actions, free));
 
     sigset_t none;
     sigset_t all;
@@ -129,8 +119,8 @@ int spawn_reader(const std::string& program, std::vector<std::string> arguments,
     check(posix_spawnattr_setsigmask(&plan.attributes, &none));
     check(posix_spawnattr_setsigdefault(&plan.attributes, &all));
     check(posix_spawnattr_setpgroup(&plan.attributes, 0));
-    check(posix_spawnattr_setflags(&plan.attributes,
-                                   POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP));
+    constexpr short kFlags = POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP;
+    check(posix_spawnattr_setflags(&plan.attributes, static_cast<short>(kFlags | flags_that_close_others())));
     if (failed != 0) return failed;
 
     std::vector<char*> argv = {const_cast<char*>(program.c_str())};

@@ -12,15 +12,13 @@
 #include <string>
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <poll.h>
-#include <sys/mman.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <tex/file.h>
 
 #include "cli/exit_code.h"
+#include "cli/process_posix.h"
 
 namespace tex::cli {
 namespace {
@@ -39,24 +37,6 @@ bool write_all(int fd, std::string_view text) {
     }
     return true;
 }
-
-// Checks that the process can get any memory at all, and prints an error if it cannot. It must run before the
-// constructors of the libraries, which call abort() if they get no memory. It must also run before the standard library
-// reserves memory for exceptions; without that memory, throwing an exception calls abort(), too.
-void check_memory(int, char** argv, char**) {
-    constexpr std::size_t kStart = std::size_t{4} << 20;
-    // A direct system call: libraries that intercept functions of the C library are not ready yet.
-    const long memory = syscall(SYS_mmap, 0L, kStart, long{PROT_NONE}, long{MAP_PRIVATE | MAP_ANONYMOUS}, -1L, 0L);
-    if (memory != -1) {
-        syscall(SYS_munmap, memory, kStart);
-        return;
-    }
-    const char* const slash = std::strrchr(argv[0], '/');
-    write_all(STDERR_FILENO, slash == nullptr ? argv[0] : slash + 1);
-    write_all(STDERR_FILENO, ": error: out of memory\n");
-    _exit(static_cast<int>(ExitCode::io));
-}
-[[gnu::section(".preinit_array"), gnu::used]] void (*const g_check_memory)(int, char**, char**) = check_memory;
 
 // Opens /dev/null in the wrong direction for each of the three streams that is closed. Otherwise a file that we open
 // could become standard output by accident. Reading or writing such a stream then fails.
@@ -112,7 +92,7 @@ extern "C" void on_alarm(int) { end_by_signal(g_signal); }
         while (is_ending.test_and_set()) pause();  // another thread ends the process
         sleep(kPatience);
         remove_unfinished_files();
-        write_all(STDERR_FILENO, program_invocation_short_name);
+        write_all(STDERR_FILENO, program_name());
         write_all(STDERR_FILENO, ": error: out of memory\n");
         _exit(static_cast<int>(ExitCode::io));
     } catch (...) {  // printed below
@@ -135,17 +115,9 @@ void catch_signals() {
     sigaction(SIGALRM, &action, nullptr);
 }
 
-// Keeps freed memory for the next file, up to kKept bytes at the end of each heap. By default, glibc gives it back
-// after each file, and the system clears it again for the next one. Large blocks are still given back at once.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    constexpr int kKept = 32 << 20, kLargeBlock = 4 << 20;
-    mallopt(M_TRIM_THRESHOLD, kKept);
-    mallopt(M_MMAP_THRESHOLD, kLargeBlock);
-#endif
-}
-
 }  // namespace
+
+Arguments own_arguments(int argc, char** argv) { return {argv, static_cast<std::size_t>(argc)}; }
 
 ProcessHost::ProcessHost() {
     keep_freed_memory();

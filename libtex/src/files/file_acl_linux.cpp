@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "files/file_rights.h"
-
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/xattr.h>
 #include <unistd.h>
 
@@ -13,7 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "files/input_file.h"
+#include "files/descriptor.h"
+#include "files/file_acl.h"
+#include "files/file_rights.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -83,7 +84,7 @@ std::uint32_t little_endian(std::span<const std::byte> bytes) {
 
 // Gives `fd` the ACL of the old file, or none if that file has none. If this fails, the returned mode still gives
 // nobody more rights than before.
-mode_t keep_acl(int fd, const Attributes& old, mode_t mode, bool owners_kept) {
+mode_t with_acl(int fd, const Attributes& old, mode_t mode, bool owners_kept) {
     const auto acl = old.get(kAcl);
     const bool has_none = !acl && (errno == ENODATA || errno == EOPNOTSUPP);
     // The folder may have given the new file an ACL, which `mode` would activate.
@@ -120,22 +121,15 @@ mode_t mode_without_acl(mode_t mode, std::span<const std::byte> acl) {
     return (mode & ~static_cast<mode_t>(S_IRWXG | S_IRWXO)) | (*of_group & of_users) << 3 | (mode & of_named);
 }
 
-void keep_rights(int fd, int folder, const std::string& name, const struct stat& old) {
-    mode_t mode = old.st_mode & 07777;
-    struct stat now {};
-    if (fstat(fd, &now) != 0) return;
+mode_t keep_acl(int fd, int folder, const std::string& name, mode_t mode, bool owners_kept) {
     const Attributes attributes(folder, name);
-    const bool owner_kept = now.st_uid == old.st_uid || fchown(fd, old.st_uid, static_cast<gid_t>(-1)) == 0;
-    const bool group_kept = now.st_gid == old.st_gid || fchown(fd, static_cast<uid_t>(-1), old.st_gid) == 0;
-    mode = keep_acl(fd, attributes, mode, owner_kept && group_kept);
-    if (!owner_kept) mode &= ~static_cast<mode_t>(S_ISUID);
-    if (!group_kept) mode = (mode & ~static_cast<mode_t>(S_ISGID | S_IRWXG)) | (mode & S_IRWXO) << 3;
+    mode = with_acl(fd, attributes, mode, owners_kept);
     for (const std::string& attribute : attributes.names()) {
         if (!attribute.starts_with("user.")) continue;
         if (const auto value = attributes.get(attribute.c_str()))
             static_cast<void>(fsetxattr(fd, attribute.c_str(), value->data(), value->size(), 0));
     }
-    static_cast<void>(fchmod(fd, mode));  // if this fails, only its writer can read the file
+    return mode;
 }
 
 }  // namespace tex::inline v1

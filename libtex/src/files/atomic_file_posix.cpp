@@ -3,7 +3,6 @@
 #include "files/atomic_file.h"
 
 #include <fcntl.h>
-#include <linux/fs.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,6 +18,7 @@
 
 #include "files/file_rights.h"
 #include "files/input_file.h"
+#include "files/nameless_file.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
 #include "files/unfinished_files.h"
@@ -29,11 +29,9 @@ namespace {
 
 // Returns 0 or an errno.
 int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
-    constexpr std::size_t kMostWritten = std::size_t{1} << 30;
     while (!bytes.empty()) {
-        const ssize_t n = ::pwrite(fd, bytes.data(), std::min(bytes.size(), kMostWritten), static_cast<off_t>(offset));
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return n < 0 ? errno : EIO;
+        const std::ptrdiff_t n = write_some_at(fd, offset, bytes.data(), bytes.size());
+        if (n < 0) return errno;
         bytes = bytes.subspan(static_cast<std::size_t>(n));
         offset += static_cast<std::uint64_t>(n);
     }
@@ -81,7 +79,7 @@ Result<Target> find_target(const std::string& path, const AtomicFileOptions& opt
     const std::string folder = slash == std::string::npos ? "." : full.substr(0, slash + 1);
     if (target.name.empty()) return Error{ErrorCode::io, path, "names a directory, not a file"};
 
-    target.folder = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+    target.folder = Descriptor(::open(folder.c_str(), folder_flags() | O_DIRECTORY | O_CLOEXEC));
     if (!target.folder) {
         if (errno == ENOENT) return Error{ErrorCode::io, path, "the directory does not exist"};
         return system_error(path, errno);
@@ -161,8 +159,8 @@ int move_into_place(const NameSection&, const Target& target, const std::string&
     if (!no_clobber) {
         failed = renameat(folder, from, folder, to);
     } else {
-        failed = renameat2(folder, from, folder, to, RENAME_NOREPLACE);
-        if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {
+        failed = rename_to_new(folder, from, to) ? 0 : -1;
+        if (failed != 0 && errno == ENOSYS) {
             failed = linkat(folder, from, folder, to, 0);
             if (failed == 0) unlinkat(folder, from, 0);
         }
@@ -183,19 +181,14 @@ Result<void> moved(const Target& target, int failed, bool no_clobber) {
 // The mode of a new file: the umask decides. A replacement is private until keep_rights().
 mode_t first_mode(const Target& target) { return target.existing ? 0600 : 0666; }
 
-std::string path_of_open(int fd) { return "/proc/self/fd/" + std::to_string(fd); }
-
 // Opens a file without a name; returns an empty descriptor if nameless files are not possible here. Errors: io.
-Result<Descriptor> open_nameless(const Target& target) {
-    Descriptor file(::openat(target.folder.get(), ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, first_mode(target)));
+Result<Descriptor> open_without_name(const Target& target) {
+    Descriptor file = open_nameless(target.folder.get(), first_mode(target));
     if (file) {
-        // The file will get its name through /proc.
-        if (faccessat(AT_FDCWD, path_of_open(file.get()).c_str(), F_OK, 0) != 0) return Descriptor();
         lock(file.get());
         return file;
     }
-    const bool unsupported = errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL || errno == ENOENT;
-    if (unsupported) return Descriptor();
+    if (errno == ENOTSUP) return Descriptor();
     return system_error(target.path, errno, "the directory cannot be written");
 }
 
@@ -221,10 +214,7 @@ Result<Descriptor> open_named(const Target& target, std::string& name, Unfinishe
 }
 
 Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
-    const std::string nameless = path_of_open(fd);
-    const auto link = [&](const std::string& name) {
-        return linkat(AT_FDCWD, nameless.c_str(), target.folder.get(), name.c_str(), AT_SYMLINK_FOLLOW) == 0;
-    };
+    const auto link = [&](const std::string& name) { return give_name(fd, target.folder.get(), name); };
     if (!target.existing || no_clobber) {
         if (link(target.name)) return {};
         if (errno != EEXIST) return system_error(target.path, errno, "cannot be put into place");
@@ -288,7 +278,7 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
             return system_error(path, errno);
         }
         state->target = std::move(*target);
-        Result<Descriptor> file = open_nameless(state->target);
+        Result<Descriptor> file = open_without_name(state->target);
         if (file && !*file) file = open_named(state->target, state->temporary, state->unfinished.emplace());
         if (!file) return file.error();
         state->file = std::move(*file);
