@@ -4,7 +4,7 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
-#                                   package abi engines platforms portable
+#                                   package abi engines platforms portable windows
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -210,6 +210,11 @@ portable() {
     samples/packaging/portable.sh && counted portable tests/portable.sh
 }
 
+# The archive for Windows, under Wine.
+windows() {
+    samples/packaging/windows.sh && counted windows tests/windows.sh
+}
+
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${gate_packages[@]}" "${nightly_packages[@]}"
 if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
 
@@ -227,4 +232,5 @@ step abi abi
 step engines engines
 step platforms platforms
 step portable portable
+step windows windows
 finish

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What is inside the portable archive: an SPDX 2.3 document, and the licence of each part.
+"""What is inside the portable archive, or the one for Windows: an SPDX 2.3 document, and the licence of each part.
 
 Reads what the linker took from which static library (--trace), and ends with an error if it took something that the
 table below does not have.
@@ -50,7 +50,19 @@ PARTS = {  # by the name of the Debian source package
     "opencolorio": Part("BSD-3-Clause", "OpenColorIO"),
     "pystring": Part("BSD-3-Clause", "pystring"),
 }
-OWN = {"tex", "tex_cli"}
+# The archive for Windows: what portable/libraries.sh builds has no package there, either.
+WINDOWS = {name: part._replace(package="") for name, part in PARTS.items()
+           if name not in ("glibc", "gcc-12", "zlib", "nlohmann-json3", "tomlplusplus")}
+WINDOWS |= {
+    "nlohmann-json3": PARTS["nlohmann-json3"],
+    "tomlplusplus": PARTS["tomlplusplus"],
+    "gcc-mingw-w64": Part(GCC, "stdc++ gcc gcc_eh", "gcc-mingw-w64-x86-64-posix-runtime"),
+    "mingw-w64": Part("ZPL-2.1 AND MIT AND LicenseRef-public-domain", "mingw32 mingwex moldname msvcrt pthread winpthread "
+                      "kernel32 user32 advapi32 shell32 gdi32 winspool ole32 oleaut32 uuid comdlg32",
+                      "mingw-w64-x86-64-dev"),
+    "libz-mingw-w64": Part("Zlib", "z", "libz-mingw-w64-dev"),
+}
+OWN = {"tex", "tex_cli", "tex_all", "libtex-commands"}
 
 
 def linked(trace: Path) -> set[str]:
@@ -97,22 +109,24 @@ def package(name: str, version: str, licence: str, source: str) -> dict:
 
 def main() -> None:
     reader = argparse.ArgumentParser()
+    reader.add_argument("--system", default="linux-x86_64", choices=("linux-x86_64", "windows-x86_64"))
     for option in ("version", "date"):
         reader.add_argument("--" + option, required=True)
     for option in ("sources", "trace", "out"):
         reader.add_argument("--" + option, type=Path, required=True)
     given = reader.parse_args()
 
+    parts = WINDOWS if given.system == "windows-x86_64" else PARTS
     names = linked(given.trace)
-    known = set(OWN).union(*(part.libraries.split() for part in PARTS.values()))
+    known = set(OWN).union(*(part.libraries.split() for part in parts.values()))
     if unknown := names - known:
         sys.exit(f"inventory.py: linked, but not in the table: {', '.join(sorted(unknown))}")
 
     licences = given.out / "licences"
     licences.mkdir()
-    whole = f"libtex-{given.version}-linux-x86_64"
+    whole = f"libtex-{given.version}-{given.system}"
     packages = [package("libtex", given.version, "Apache-2.0", "NOASSERTION")]
-    for name, part in PARTS.items():
+    for name, part in parts.items():
         if part.libraries and not names.intersection(part.libraries.split()):
             continue
         version = version_of(name, part, given.sources)
@@ -132,7 +146,7 @@ def main() -> None:
         + [{"spdxElementId": "SPDXRef-libtex", "relationshipType": "STATIC_LINK", "relatedSpdxElement": one["SPDXID"]}
            for one in packages[1:]],
         "hasExtractedLicensingInfos": [{"licenseId": "LicenseRef-public-domain",
-                                        "extractedText": "liblzma is in the public domain."}],
+                                        "extractedText": "In the public domain: liblzma, and parts of the runtime of mingw-w64."}],
     }
     (given.out / "libtex.spdx.json").write_text(json.dumps(document, indent=1) + "\n")
 
