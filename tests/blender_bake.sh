@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# blender_bake.sh [BUILD]: Blender's Cycles ("Selected to Active") and samples/python/blender_transfer.py with the module
-# of BUILD (build/release) make the normal map of the crates in samples. Rays leave along the stored normals. Both must
-# miss the same texels, and agree on the others. By hand, because Blender takes 600 MB:
+# blender_bake.sh [BUILD]: Blender's Cycles ("Selected to Active") and samples/python/blender_transfer.py, with the
+# module of BUILD (build/release), make the normal map of the crates in samples. Rays leave along the stored normals.
+# Both must miss the same texels, and agree on the others. By hand, because Blender takes 600 MB:
 # apt-get install --no-install-recommends blender
 #
 # Last result: LAST

@@ -218,10 +218,9 @@ struct OtherName {
     bool OtherPlanes::*has;
     std::optional<OtherData> OtherInputs::*input;
 };
-inline constexpr OtherName kOtherNames[] = {
-    {"blue", &NormalMap::blue, &OtherPlanes::blue, &OtherInputs::blue},
-    {"alpha", &NormalMap::alpha, &OtherPlanes::alpha, &OtherInputs::alpha},
-    {"length", &NormalMap::length, &OtherPlanes::length, &OtherInputs::length}};
+inline constexpr OtherName kOtherNames[] = {{"blue", &NormalMap::blue, &OtherPlanes::blue, &OtherInputs::blue},
+                                            {"alpha", &NormalMap::alpha, &OtherPlanes::alpha, &OtherInputs::alpha},
+                                            {"length", &NormalMap::length, &OtherPlanes::length, &OtherInputs::length}};
 
 // The place with that name. Raises ValueError for others.
 [[nodiscard]] const OtherName& other_from(std::string_view word, std::string_view name);

@@ -82,7 +82,8 @@ Encoding default_encoding(Container container) { return codec_of(container).defa
 
 Result<void> validate(const WriteOptions& options) {
     if (options.zstd < 0 || options.zstd > kHighestZstdLevel) return bad_option("zstd: must be from 0 to 22");
-    if (options.jpeg_quality < 1 || options.jpeg_quality > 100) return bad_option("jpeg_quality: must be from 1 to 100");
+    const int quality = options.jpeg_quality;
+    if (quality < 1 || quality > 100) return bad_option("jpeg_quality: must be from 1 to 100");
     return {};
 }
 

@@ -123,8 +123,7 @@ Error no_hit(const TangentSpace& low, const RayGroups& groups, const Transferred
             "no ray hits the high mesh from outside: the triangles that rays meet face the other way. Turn them, or "
             "let back faces count"};
     }
-    return {ErrorCode::bad_option, low.file,
-            "no ray hits the high mesh, while " + reach + ": rays must reach farther"};
+    return {ErrorCode::bad_option, low.file, "no ray hits the high mesh, while " + reach + ": rays must reach farther"};
 }
 
 // Sets result.front and result.back.
