@@ -16,6 +16,9 @@ namespace {
 
 constexpr int header_bits(int partitions) { return partitions == 1 ? 17 : 29; }
 
+// Partitions with their own modes of endpoints have as many more bits, below those of the weights.
+constexpr int mixed_bits(int partitions) { return 3 * partitions - 4; }
+
 // `meanings` are values from 0 to `top`. `nearest` gets the nearest value (the lower one of two) to each multiple of
 // top / steps.
 AstcValues values_of(const std::uint8_t* meanings, int levels, int top, int steps) {
@@ -37,6 +40,44 @@ AstcValues values_of(const std::uint8_t* meanings, int levels, int top, int step
         values.upper[k] = static_cast<float>(k == top ? top : above[k + 1]);
     }
     return values;
+}
+
+// `is_there` says which of `count` numbers there are. Gets the nearest one (the lower one of two), the next lower and the
+// next higher one, or the same at the ends.
+void fill_nearest(const bool* is_there, int count, float* nearest, float* lower, float* upper) {
+    for (int k = 0; k < count; ++k) {
+        int down = k, up = k, below = k - 1, above = k + 1;
+        while (down >= 0 && !is_there[down]) --down;
+        while (up < count && !is_there[up]) ++up;
+        while (below >= 0 && !is_there[below]) --below;
+        while (above < count && !is_there[above]) ++above;
+        nearest[k] = static_cast<float>(down < 0 || (up < count && up - k < k - down) ? up : down);
+        lower[k] = below >= 0 ? static_cast<float>(below) : nearest[k];
+        upper[k] = above < count ? static_cast<float>(above) : nearest[k];
+    }
+}
+
+AstcOffsets offsets_of(const std::uint8_t* meanings, int levels) {
+    AstcOffsets made{};
+    bool is_base[256] = {}, is_offset[128] = {};
+    std::fill(std::begin(made.stored_offset), std::end(made.stored_offset), std::int16_t{-1});
+    for (int v = 0; v < levels; ++v) {
+        const int value = meanings[v], base = value >> 1, six = value >> 1 & 0x3f;
+        is_base[base] = is_base[base + 128] = true;
+        made.stored_base[base] = static_cast<std::uint8_t>(v);
+        const int place = AstcOffsets::place(value & 0x80, six >= 32 ? six - 64 : six);
+        is_offset[place] = true;
+        made.stored_offset[place] = static_cast<std::int16_t>(v);
+    }
+    fill_nearest(is_base, 256, made.nearest, made.lower, made.upper);
+    for (int half = 0; half < 128; half += 64) {
+        float* const tables[] = {made.nearest_offset + half, made.lower_offset + half, made.upper_offset + half};
+        fill_nearest(is_offset + half, 64, tables[0], tables[1], tables[2]);
+        for (float* table : tables) {
+            for (int k = 0; k < 64; ++k) table[k] -= 32.0f;
+        }
+    }
+    return made;
 }
 
 std::unique_ptr<AstcGrid> make_grid(Extent block, Extent extent) {
@@ -76,14 +117,17 @@ std::unique_ptr<AstcGrid> make_grid(Extent block, Extent extent) {
     return made;
 }
 
+int color_bits(int partitions, const AstcMode& mode) {
+    return 128 - header_bits(partitions) - mode.weight_bits() - (mode.planes == 2 ? 2 : 0);
+}
+
 void add_plans(int partitions, AstcPlans& plans) {
     std::set<std::tuple<int, int, int, int>> seen;  // some modes can be written in several ways
     for (unsigned bits = 0; bits < 1u << kAstcModeBits; ++bits) {
         if ((bits & 0x1ff) == kAstcVoid) continue;
         const std::optional<AstcMode> mode = astc_mode(bits, plans.block);
         if (!mode || !seen.insert({mode->grid.width, mode->grid.height, mode->planes, mode->range}).second) continue;
-        const int color_bits = 128 - header_bits(partitions) - mode->weight_bits() - (mode->planes == 2 ? 2 : 0);
-        const int color_range = astc_range_within(4 * partitions, color_bits);
+        const int color_range = astc_range_within(4 * partitions, color_bits(partitions, *mode));
         if (color_range < kAstcLeastColorRange) continue;
         auto grid = std::find_if(plans.grids.begin(), plans.grids.end(),
                                  [&](const auto& made) { return made->extent == mode->grid; });
@@ -92,7 +136,23 @@ void add_plans(int partitions, AstcPlans& plans) {
             grid = plans.grids.end() - 1;
         }
         plans.plans.push_back({*mode, bits, partitions, color_range, grid->get(), &astc_weight_values(mode->range),
-                               &astc_color_values(color_range)});
+                               &astc_color_values(color_range), &astc_color_offsets(color_range)});
+    }
+}
+
+void add_mixed_plans(AstcPlans& plans) {
+    const std::size_t count = plans.plans.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        AstcPlan plan = plans.plans[k];
+        if (plan.partitions == 1) continue;
+        const int color_range = astc_range_within(4 * plan.partitions, color_bits(plan.partitions, plan.mode) - mixed_bits(plan.partitions));
+        if (color_range < kAstcLeastColorRange) continue;
+        plans.plans[k].mixed = static_cast<int>(plans.plans.size());
+        plan.is_mixed = true;
+        plan.color_range = color_range;
+        plan.colors = &astc_color_values(color_range);
+        plan.offsets = &astc_color_offsets(color_range);
+        plans.plans.push_back(plan);
     }
 }
 
@@ -119,6 +179,7 @@ AstcPlans make_plans(Extent block) {
     AstcPlans plans;
     plans.block = block;
     for (int partitions = 1; partitions <= 3; ++partitions) add_plans(partitions, plans);
+    add_mixed_plans(plans);
     for (int partitions = 2; partitions <= 3; ++partitions) add_patterns(partitions, plans);
     return plans;
 }
@@ -145,6 +206,16 @@ const AstcValues& astc_color_values(int range) {
     return kValues[static_cast<std::size_t>(range)];
 }
 
+const AstcOffsets& astc_color_offsets(int range) {
+    static const auto kOffsets = [] {
+        std::array<AstcOffsets, kAstcRanges> all;
+        for (int r = kAstcLeastColorRange; r < kAstcRanges; ++r)
+            all[static_cast<std::size_t>(r)] = offsets_of(kAstcMeanings.color[r], kAstcRangeTable[r].levels);
+        return all;
+    }();
+    return kOffsets[static_cast<std::size_t>(range)];
+}
+
 const AstcPlans& astc_plans(Extent block) {
     static std::array<std::once_flag, 81> once;
     static std::array<std::unique_ptr<const AstcPlans>, 81> made;
@@ -153,19 +224,50 @@ const AstcPlans& astc_plans(Extent block) {
     return *made[place];
 }
 
+namespace {
+
+// The values that store the endpoints of a channel.
+void store_ends(const AstcPlan& plan, const std::uint8_t ends[2], bool is_offset, std::uint8_t* values) {
+    if (!is_offset) {
+        for (int e = 0; e < 2; ++e) values[e] = plan.colors->stored[ends[e]];
+        return;
+    }
+    const AstcOffsets& offsets = *plan.offsets;
+    const int base = ends[0];
+    values[0] = offsets.stored_base[base & 0x7f];
+    for (int offset = -32; offset < 32; ++offset) {
+        const int stored = offsets.stored_offset[AstcOffsets::place(base, offset)];
+        // Decoders limit the sum.
+        if (stored >= 0 && std::clamp(base + offset, 0, 255) == ends[1]) values[1] = static_cast<std::uint8_t>(stored);
+    }
+}
+
+void put_header(const AstcPlan& plan, const AstcContent& content, AstcBits& bits) {
+    const auto mode_of = [&](int p) {
+        return (content.offsets >> p & 1) != 0 ? kAstcLuminanceAlphaOffset : kAstcLuminanceAlpha;
+    };
+    bits.put(0, kAstcModeBits, plan.mode_bits);
+    if (plan.partitions == 1) return bits.put(13, 4, static_cast<unsigned>(mode_of(0)));
+    bits.put(11, 2, static_cast<unsigned>(plan.partitions - 1));
+    bits.put(13, 10, content.pattern);
+    if (!plan.is_mixed) return bits.put(25, 4, static_cast<unsigned>(mode_of(0)));
+    // Two bits say that all modes are at least 4, a bit for each says that it is below 8, and two are the rest of it.
+    unsigned modes = 2;
+    for (int p = 0; p < plan.partitions; ++p) modes |= static_cast<unsigned>(mode_of(p) - 4) << (2 + plan.partitions + 2 * p);
+    const int more = mixed_bits(plan.partitions);
+    bits.put(23, 6, modes & 0x3f);
+    bits.put(128 - plan.mode.weight_bits() - more, more, modes >> 6);
+}
+
+}  // namespace
+
 void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* block) {
     AstcBits bits;
-    bits.put(0, kAstcModeBits, plan.mode_bits);
-    if (plan.partitions == 1) {
-        bits.put(13, 4, kAstcLuminanceAlpha);
-    } else {
-        bits.put(11, 2, static_cast<unsigned>(plan.partitions - 1));
-        bits.put(13, 10, content.pattern);
-        bits.put(25, 4, kAstcLuminanceAlpha);
-    }
-    std::uint8_t values[12];
+    put_header(plan, content, bits);
+    std::uint8_t values[12] = {};
     for (int p = 0; p < plan.partitions; ++p) {
-        for (int k = 0; k < 4; ++k) values[4 * p + k] = plan.colors->stored[content.ends[p][k / 2][k % 2]];
+        for (int c = 0; c < 2; ++c)
+            store_ends(plan, content.ends[p][c], (content.offsets >> p & 1) != 0, values + 4 * p + 2 * c);
     }
     write_astc_ise(bits, header_bits(plan.partitions), plan.color_range, 4 * plan.partitions, values);
 
@@ -178,7 +280,10 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
     AstcBits weights;
     write_astc_ise(weights, 0, plan.mode.range, planes * plan.grid->weights, stored);
     const AstcBits reversed = weights.reversed();
-    if (planes == 2) bits.put(128 - plan.mode.weight_bits() - 2, 2, 3);  // alpha
+    if (planes == 2) {
+        const int modes = plan.is_mixed ? mixed_bits(plan.partitions) : 0;
+        bits.put(128 - plan.mode.weight_bits() - modes - 2, 2, 3);  // alpha
+    }
     bits.low |= reversed.low;
     bits.high |= reversed.high;
     write_astc_bits(bits, block);

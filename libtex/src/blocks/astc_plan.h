@@ -45,6 +45,20 @@ struct AstcValues {
 [[nodiscard]] const AstcValues& astc_weight_values(int range);
 [[nodiscard]] const AstcValues& astc_color_values(int range);
 
+// The endpoints of a base and an offset: the base has steps of half those of a value, and so has the offset, which is
+// from -32 to 31. The highest bit of the base stands in the value of the offset, so that the offsets from bases of 128
+// and more are not those from others.
+struct AstcOffsets {
+    float nearest[256], lower[256], upper[256];  // bases, as endpoints in AstcValues
+    // Of offsets, at 32 + offset, and 64 places farther for bases from 128.
+    float nearest_offset[128], lower_offset[128], upper_offset[128];
+    std::uint8_t stored_base[128];         // by the lower 7 bits of the base
+    std::int16_t stored_offset[2 * 64];  // by the place of the offset, or -1
+
+    static int place(int base, int offset) { return 32 + offset + (base >= 128 ? 64 : 0); }
+};
+[[nodiscard]] const AstcOffsets& astc_color_offsets(int range);
+
 struct AstcPlan {
     AstcMode mode;
     unsigned mode_bits = 0;
@@ -53,6 +67,9 @@ struct AstcPlan {
     const AstcGrid* grid = nullptr;
     const AstcValues* weights = nullptr;
     const AstcValues* colors = nullptr;
+    const AstcOffsets* offsets = nullptr;
+    bool is_mixed = false;  // some partitions may have bases and offsets and others not
+    int mixed = -1;         // the plan that differs in this alone, if there is one
 };
 
 // A way to divide the texels of a block into two or three partitions, none of them empty.
@@ -65,7 +82,7 @@ struct AstcPattern {
 struct AstcPlans {
     Extent block;
     std::vector<std::unique_ptr<AstcGrid>> grids;
-    std::vector<AstcPlan> plans;
+    std::vector<AstcPlan> plans;  // mixed ones last
     std::vector<AstcPattern> patterns[2];  // of two partitions; of three
 };
 
@@ -77,6 +94,7 @@ struct AstcContent {
     std::uint8_t weights[2][kAstcMostWeights];  // by plane; 0 to 64
     std::uint8_t ends[3][2][2];                 // by partition and channel (x, y): the endpoints
     unsigned pattern = 0;                       // the index of the partition
+    unsigned offsets = 0;  // a bit for each partition: whether its endpoints are stored as bases and offsets
 };
 
 void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* block);

@@ -32,7 +32,7 @@ void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gr
     const FloatTag d;
     const int weights = plan.grid->weights;
     if (plan.mode.planes == 1) {
-        AstcLine<2, kPartitions> both(plan, steps, group.partition, group.value[0], group.value[1]);
+        AstcLine<2, kPartitions> both(plan, steps, group, group.value[0], group.value[1]);
         both.fit();
         StoreLine(both, weights, 0, fits);
         hn::Store(both.best().error, d, fits.error);
@@ -40,7 +40,7 @@ void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gr
     }
     FloatVec error = hn::Zero(d);
     for (int c = 0; c < 2; ++c) {
-        AstcLine<1, kPartitions> line(plan, steps, group.partition, group.value[c], nullptr);
+        AstcLine<1, kPartitions> line(plan, steps, group, group.value[c], nullptr);
         line.fit();
         StoreLine(line, weights, c, fits);
         error = hn::Add(error, line.best().error);

@@ -19,6 +19,8 @@ inline constexpr int kAstcLanes = 16;
 struct AstcGroup {
     const float* value[2] = {};
     const float* partition = nullptr;
+    // By partition and block: 1 where endpoints are stored as bases and offsets, otherwise 0.
+    const float* offset = nullptr;
 };
 
 // What fits each block: weights by plane, weight and block; endpoints by partition, channel, end and block.

@@ -3,7 +3,7 @@
 //
 // The error of a plan is guessed as what its grid cannot express (the energy outside the space that the grid spans),
 // and noise from rounding weights and endpoints: in proportion to the squared range of the texels over the squared
-// number of levels. Of two partitions, the grid is taken to be full.
+// number of levels.
 
 #pragma once
 
@@ -16,13 +16,18 @@ namespace tex::inline v1 {
 
 inline constexpr int kAstcMostGuesses = 64;
 
+// Texels whose channels have ranges up to this one are narrow: their endpoints are better stored as bases and offsets.
+inline constexpr float kAstcNarrow = 31.0f;
+
 // Guesses of each block: errors, numbers of plans, and numbers of patterns in the guide.
 struct AstcGuesses {
     int count = 0;  // at most kAstcMostGuesses; set by the caller
     alignas(64) float error[kAstcMostGuesses * kAstcLanes];
     alignas(64) float plan[kAstcMostGuesses * kAstcLanes];
     alignas(64) float pattern[kAstcMostGuesses * kAstcLanes];
-    alignas(64) float range[kAstcLanes];  // of both channels, the sum of the squares; guess_astc() sets it
+    alignas(64) float offsets[kAstcMostGuesses * kAstcLanes];  // a bit for each partition that is narrow
+    alignas(64) float range[kAstcLanes];   // of both channels, the sum of the squares; guess_astc() sets it
+    alignas(64) float widest[kAstcLanes];  // the greater one of the channels' ranges; guess_astc() sets it
 };
 
 // Parts `count` pairs of x and y, limits them to [-1, 1], adds 1 and multiplies by `scale`.
@@ -30,10 +35,5 @@ void astc_planes(const float* xy, std::size_t count, float scale, float* x, floa
 
 // Of plans with one partition: the `count` best, from the best.
 void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses);
-
-// Of plans with two or three partitions: for each of the `patterns` best patterns and each grid, the best plan. Sets
-// `count`. What the grid cannot express is left out, so the guess is a low one.
-void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns,
-                         AstcGuesses& guesses);
 
 }  // namespace tex::inline v1

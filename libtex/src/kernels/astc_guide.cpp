@@ -18,9 +18,6 @@ constexpr float kMeasuredNoise[kAstcWeightRanges] = {0.26f, 0.455f, 0.555f, 0.61
                                                      0.69f, 0.69f,  0.7f,   0.7f,  0.7f,  0.7f};
 constexpr float kMeasuredEnds = 0.6f;
 
-// The squared range of texels along a line in terms of their mean energy; evenly spread, it would be 12.
-constexpr float kLineEnergy = 10.0f;
-
 AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
     const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
     const auto texels = static_cast<float>(plans.block.width * plans.block.height);
@@ -30,27 +27,10 @@ AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
         for (const float share : plan.grid->infill[k]) kept += share * share / 256.0f;
     }
     const float step = 255.0f / static_cast<float>(kAstcRangeTable[plan.color_range].levels - 1);
-    return {number, plan.mode.planes, kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps),
-            2.0f * texels * kMeasuredEnds * step * step / 12.0f,
+    const auto ends = [&](float s) { return 2.0f * texels * kMeasuredEnds * s * s / 12.0f; };
+    return {number, plan.mode.planes, kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps), ends(step),
+            ends(std::max(1.0f, 0.5f * step)), plan.mode.range < kAstcCoarseLevels ? plan.mode.range : -1,
             plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
-}
-
-// Grids for several partitions, the most useful ones on the real maps first: full ones, and bands along an axis.
-std::vector<AstcGuide::Grid> part_grids(Extent block, int count) {
-    const auto [w, h] = std::pair(block.width, block.height);
-    const AstcGuide::Grid all[] = {{{w, h}, 1, {}},
-                                   {{w, 2}, 1, {}},
-                                   {{2, h}, 1, {}},
-                                   {{w, h}, 2, {}},
-                                   {{w, std::max(3, h / 2)}, 2, {}},
-                                   {{std::max(3, w / 2), h}, 2, {}},
-                                   {{w - 1, h - 1}, 1, {}},
-                                   {{w, 2}, 2, {}},
-                                   {{2, h}, 2, {}},
-                                   {{w, h - 1}, 1, {}},
-                                   {{w - 1, h}, 1, {}},
-                                   {{2, (h + 2) / 2}, 1, {}}};
-    return {std::begin(all), std::begin(all) + std::min<std::ptrdiff_t>(count, std::size(all))};
 }
 
 // Gram and Schmidt's method in double precision.
@@ -81,35 +61,26 @@ void make_basis(int texels, int weights, float basis[8][8]) {
 AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
     AstcGuide guide{};
     guide.plans = &plans;
-    for (int p = 0; p < 2; ++p) guide.of_parts[p] = part_grids(plans.block, reach.part_grids[p]);
     for (int number = 0; number < static_cast<int>(plans.plans.size()); ++number) {
-        AstcGuide::Choice choice = choice_of(plans, number);
+        const AstcGuide::Choice choice = choice_of(plans, number);
         const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
         const AstcMode& mode = plan.mode;
-        if (plan.partitions > 1) {
-            choice.weights *= kLineEnergy / static_cast<float>(plans.block.width * plans.block.height);
-            for (AstcGuide::Grid& grid : guide.of_parts[plan.partitions - 2]) {
-                if (grid.extent == mode.grid && grid.planes == mode.planes) grid.choices.push_back(choice);
-            }
-            continue;
-        }
+        if (plan.is_mixed) continue;
         if (mode.grid != plans.block && std::max(mode.grid.width, mode.grid.height) > reach.most_weights) continue;
-        auto grid = std::find_if(guide.grids.begin(), guide.grids.end(),
+        auto& grids = plan.partitions == 1 ? guide.grids : guide.of_parts[plan.partitions - 2];
+        auto grid = std::find_if(grids.begin(), grids.end(),
                                  [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
-        if (grid == guide.grids.end()) {
-            guide.grids.push_back({mode.grid, 0, {}});
-            grid = guide.grids.end() - 1;
+        if (grid == grids.end()) {
+            grids.push_back({mode.grid, {}});
+            grid = grids.end() - 1;
         }
         grid->choices.push_back(choice);
     }
-    for (auto& grids : guide.of_parts) {
-        grids.erase(std::remove_if(grids.begin(), grids.end(),
-                                   [](const AstcGuide::Grid& grid) { return grid.choices.empty(); }),
-                    grids.end());
+    for (auto* grids : {&guide.grids, &guide.of_parts[0], &guide.of_parts[1]}) {
+        std::stable_sort(grids->begin(), grids->end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {
+            return a.extent.width < b.extent.width;
+        });
     }
-    std::stable_sort(guide.grids.begin(), guide.grids.end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {
-        return a.extent.width < b.extent.width;
-    });
     for (int p = 0; p < 2; ++p) {
         for (std::size_t k = 0; k < plans.patterns[p].size(); k += static_cast<std::size_t>(reach.pattern_steps))
             guide.patterns[p].push_back(plans.patterns[p][k]);

@@ -9,6 +9,9 @@
 
 namespace tex::inline v1 {
 
+// The noise of weights of 2 to 5 levels is measured.
+inline constexpr int kAstcCoarseLevels = 4;
+
 // Plans that blocks of a size may use, in an order that the guesses need.
 struct AstcGuide {
     struct Choice {
@@ -16,17 +19,18 @@ struct AstcGuide {
         int planes;
         float weights;  // times the squared range of the texels: the noise of rounded weights
         float ends;     // the noise of rounded endpoints
+        float offsets;  // the same, of bases and offsets
+        int coarse;     // the levels of weights less 2, or -1 if there are more than kAstcCoarseLevels + 1
         float levels;   // of weights, if they are few, each texel has its own and each channel, too; otherwise 0
     };
     struct Grid {
         Extent extent;
-        int planes;  // of grids for several partitions
         std::vector<Choice> choices;
     };
     const AstcPlans* plans = nullptr;
     std::vector<Grid> grids;  // with one partition, by width
     // With two partitions; with three.
-    std::vector<Grid> of_parts[2];
+    std::vector<Grid> of_parts[2];  // by width
     std::vector<AstcPattern> patterns[2];
     // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
     float basis[2][9][8][8];
@@ -35,7 +39,6 @@ struct AstcGuide {
 // How much of it an effort uses.
 struct AstcReach {
     int most_weights = 64;   // along an axis, of grids with one partition that are not full
-    int part_grids[2] = {};  // grids for two, for three partitions
     int pattern_steps = 1;   // of so many patterns, one
 };
 [[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);

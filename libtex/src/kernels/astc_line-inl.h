@@ -45,9 +45,14 @@ class AstcLine {
 public:
     using Ends = AstcEnds<kChannels, kPartitions>;
 
-    AstcLine(const AstcPlan& plan, const AstcSteps& steps, const float* partition, const float* v0, const float* v1)
-        : plan_(plan), steps_(steps), partition_(partition), value_{v0, v1} {
+    AstcLine(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, const float* v0, const float* v1)
+        : plan_(plan), steps_(steps), partition_(group.partition), value_{v0, v1} {
         best_.error = hn::Set(d_, 1e30f);
+        for (int p = 0; p < kPartitions; ++p) {
+            offset_[p] = hn::Load(d_, group.offset + at(p));
+            const auto has_offset = hn::Gt(offset_[p], number(0.5f));
+            use_[p] = hn::AllFalse(d_, has_offset) ? kNoOffsets : hn::AllTrue(d_, has_offset) ? kOffsets : kBoth;
+        }
     }
 
     [[nodiscard]] const AstcBest<kChannels, kPartitions>& best() const { return best_; }
@@ -77,6 +82,11 @@ private:
     HWY_INLINE AstcFloat look_up(const float* table, AstcFloat place) const {
         const hn::RebindToSigned<FloatTag> di;
         return hn::GatherIndex(d_, table, hn::ConvertTo(di, hn::Add(place, number(0.5f))));
+    }
+
+    // Of values for endpoints with offsets and for others, those of a partition's blocks.
+    HWY_INLINE AstcFloat by_use(int p, AstcFloat offsets, AstcFloat others) const {
+        return hn::IfThenElse(hn::Gt(offset_[p], number(0.5f)), offsets, others);
     }
 
     // Of the partitions' values, that of a texel.
@@ -111,8 +121,9 @@ private:
     void round_grid();
     void change_weight(int w, bool rounds);
     void make_ends(Ends& ends) const;
-    AstcFloat rounded_end(AstcFloat end) const;
-    void nearest_pair(const Sums& s, AstcFloat end[2]) const;
+    AstcFloat first_end(int p, AstcFloat end, int way) const;
+    AstcFloat second_end(int p, AstcFloat first, AstcFloat end, int way) const;
+    void nearest_pair(int p, const Sums& s, AstcFloat end[2]) const;
     bool keep(const Ends& ends);
     bool polish();
     AstcFloat error_of(const Ends& ends) const;
@@ -122,6 +133,8 @@ private:
     const AstcSteps& steps_;
     const float* const partition_;
     const float* const value_[2];
+    AstcFloat offset_[kPartitions];
+    enum Use { kNoOffsets, kOffsets, kBoth } use_[kPartitions];  // of all blocks
     AstcBest<kChannels, kPartitions> best_;
     alignas(64) float ideal_[kAstcMostPlanned * kAstcLanes];   // weights of texels, and what the grid leaves of them
     alignas(64) float square_[kAstcMostPlanned * kAstcLanes];  // of the distance of the endpoints of a texel

@@ -163,41 +163,79 @@ void AstcLine<kChannels, kPartitions>::make_ends(Ends& ends) const {
             const AstcFloat mean = hn::Mul(sv[c], over_n);
             const Sums sums{n, sw, sww, sv[c], swv[c]};
             AstcFloat* const end = ends.at[p][c];
-            end[0] = rounded_end(hn::IfThenElse(is_line, e0, mean));
-            end[1] = rounded_end(hn::IfThenElse(is_line, hn::Add(e0, slope), mean));
-            if (steps_.near_ends) nearest_pair(sums, end);
+            const AstcFloat up = number(kAstcRoundedDown);
+            end[0] = hn::Mul(up, hn::IfThenElse(is_line, e0, mean));
+            end[1] = hn::Mul(up, hn::IfThenElse(is_line, hn::Add(e0, slope), mean));
+            if (steps_.near_ends) {
+                nearest_pair(p, sums, end);
+            } else {
+                end[0] = first_end(p, end[0], 0);
+                end[1] = second_end(p, end[0], end[1], 0);
+            }
         }
     }
 }
 
+// The endpoint that can be stored and is nearest, or the one below it (way -1) or above it (1).
 template <int kChannels, int kPartitions>
-HWY_INLINE AstcFloat AstcLine<kChannels, kPartitions>::rounded_end(AstcFloat end) const {
-    const AstcFloat code = hn::Mul(end, number(kAstcRoundedDown));
-    return look_up(plan_.colors->nearest, hn::Min(hn::Max(code, hn::Zero(d_)), number(255.0f)));
+AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int way) const {
+    const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
+    AstcFloat direct = code, base = code;
+    if (use_[p] != kOffsets) {
+        direct = look_up(plan_.colors->nearest, code);
+        if (way != 0) direct = look_up(way < 0 ? plan_.colors->lower : plan_.colors->upper, direct);
+    }
+    if (use_[p] != kNoOffsets) {
+        base = look_up(plan_.offsets->nearest, code);
+        if (way != 0) base = look_up(way < 0 ? plan_.offsets->lower : plan_.offsets->upper, base);
+    }
+    return by_use(p, base, direct);
 }
 
-// Of the pair and the eight pairs around it, that with the least squared error.
+// The same for the other endpoint. An offset depends on the base.
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::nearest_pair(const Sums& s, AstcFloat end[2]) const {
+AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcFloat first, AstcFloat end, int way) const {
+    const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
+    AstcFloat direct = code, sum = code;
+    if (use_[p] != kOffsets) {
+        direct = look_up(plan_.colors->nearest, code);
+        if (way != 0) direct = look_up(way < 0 ? plan_.colors->lower : plan_.colors->upper, direct);
+    }
+    if (use_[p] != kNoOffsets) {
+        const AstcFloat zero = hn::IfThenElse(hn::Gt(first, number(127.5f)), number(96.0f), number(32.0f));
+        const AstcFloat most = hn::Min(hn::Max(hn::Sub(code, first), number(-32.0f)), number(31.0f));
+        AstcFloat offset = look_up(plan_.offsets->nearest_offset, hn::Add(most, zero));
+        if (way != 0) {
+            const float* const next = way < 0 ? plan_.offsets->lower_offset : plan_.offsets->upper_offset;
+            offset = look_up(next, hn::Add(offset, zero));
+        }
+        sum = hn::Min(hn::Max(hn::Add(first, offset), hn::Zero(d_)), number(255.0f));
+    }
+    return by_use(p, sum, direct);
+}
+
+// Of the pair that is nearest and the eight pairs around it, that with the least squared error.
+template <int kChannels, int kPartitions>
+void AstcLine<kChannels, kPartitions>::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
     // The error but for a constant: a e0^2 + 2 b e0 e1 + c e1^2 - 2 (x e0 + y e1).
     const AstcFloat b = hn::Sub(s.w, s.ww), c = s.ww;
     const AstcFloat a = hn::Sub(hn::Sub(s.n, s.w), b);
     const AstcFloat y = hn::Add(s.wv, s.wv), x = hn::Sub(hn::Add(s.v, s.v), y);
     const AstcFloat b2 = hn::Add(b, b);
-    const AstcFloat tries[2][3] = {
-        {end[0], look_up(plan_.colors->lower, end[0]), look_up(plan_.colors->upper, end[0])},
-        {end[1], look_up(plan_.colors->lower, end[1]), look_up(plan_.colors->upper, end[1])}};
+    const AstcFloat asked[2] = {end[0], end[1]};
     AstcFloat least = number(1e30f);
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            const AstcFloat e0 = hn::Mul(tries[0][i], number(1.0f / kAstcRoundedDown));
-            const AstcFloat e1 = hn::Mul(tries[1][j], number(1.0f / kAstcRoundedDown));
-            const AstcFloat first = hn::Mul(e0, hn::Sub(hn::Add(hn::Mul(a, e0), hn::Mul(b2, e1)), x));
-            const AstcFloat error = hn::Add(first, hn::Mul(e1, hn::Sub(hn::Mul(c, e1), y)));
+    for (int i = -1; i <= 1; ++i) {
+        const AstcFloat first = first_end(p, asked[0], i);
+        const AstcFloat e0 = hn::Mul(first, number(1.0f / kAstcRoundedDown));
+        for (int j = -1; j <= 1; ++j) {
+            const AstcFloat second = second_end(p, first, asked[1], j);
+            const AstcFloat e1 = hn::Mul(second, number(1.0f / kAstcRoundedDown));
+            const AstcFloat of_first = hn::Mul(e0, hn::Sub(hn::Add(hn::Mul(a, e0), hn::Mul(b2, e1)), x));
+            const AstcFloat error = hn::Add(of_first, hn::Mul(e1, hn::Sub(hn::Mul(c, e1), y)));
             const auto better = hn::Lt(error, least);
             least = hn::IfThenElse(better, error, least);
-            end[0] = hn::IfThenElse(better, tries[0][i], end[0]);
-            end[1] = hn::IfThenElse(better, tries[1][j], end[1]);
+            end[0] = hn::IfThenElse(better, first, end[0]);
+            end[1] = hn::IfThenElse(better, second, end[1]);
         }
     }
 }
@@ -258,11 +296,9 @@ bool AstcLine<kChannels, kPartitions>::polish() {
             for (int way = 0; way < 9; ++way) {
                 if (way == 4) continue;
                 Ends ends = best_.ends;
-                for (int e = 0; e < 2; ++e) {
-                    const int step = (e == 0 ? way / 3 : way % 3) - 1;
-                    AstcFloat& end = ends.at[p][c][e];
-                    if (step != 0) end = look_up(step < 0 ? plan_.colors->lower : plan_.colors->upper, end);
-                }
+                AstcFloat* const end = ends.at[p][c];
+                end[0] = first_end(p, end[0], way / 3 - 1);
+                end[1] = second_end(p, end[0], end[1], way % 3 - 1);
                 make_weights(ends);
                 is_better = keep(ends) || is_better;
             }

@@ -15,6 +15,7 @@
 #include "blocks/astc_ise.h"
 #include "blocks/extent.h"
 #include "kernels/astc_guess.h"
+#include "kernels/astc_parts.h"
 #include "memory/lent_memory.h"
 
 namespace tex::inline v1 {
@@ -29,21 +30,23 @@ struct Spending {
     float likely = kNone;  // unless their guesses are above this times the best guess
     AstcSteps steps;
     int patterns[2] = {};  // of two, of three partitions
+    int part_plans[2] = {};  // for each of them
     AstcReach reach;
     float worth = 0;   // the squared error of a texel from which several partitions are tried
     int polished = 0;  // the best of all of these are fitted again, with
     AstcSteps polish;
     bool coarse = false;  // also tries the plans of coarse_plans()
+    bool both_ends = false;  // of narrow partitions, also tries endpoints without offsets
 };
 
 Spending spending_of(Format format, Effort effort) {
     // Many weights make up for endpoints that are not the best to begin with.
     const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {8, {}, 1}, 0, 0, {}, false};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {}, {8, 1}, 0, 0, {}, false};
         case Effort::best:
-            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {8, {12, 4}, 1}, 0, 6, {5, 2, 5, 3, true, 3}, true};
-        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {8, {3, 2}, 2}, 3.0f, 0, {}, false};
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {12, 4}, {8, 1}, 0, 6, {5, 2, 5, 3, true, 3}, true, true};
+        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {3, 2}, {8, 2}, 3.0f, 0, {}, false};
     }
 }
 
@@ -69,7 +72,8 @@ private:
 
 struct Candidate {
     int block, plan, pattern;
-    float error;
+    float error = 0;
+    unsigned offsets = 0;  // a bit for each partition that has a base and an offset
     int place = 0;  // among the others: std::sort() keeps no order
 };
 
@@ -93,8 +97,8 @@ CoarsePlans coarse_plans(const AstcPlans& plans) {
 
 // The most candidates that a block has.
 int most_candidates(const Spending& spending) {
-    return spending.guesses + (spending.coarse ? kCoarse : 0) + spending.patterns[0] * spending.reach.part_grids[0] +
-           spending.patterns[1] * spending.reach.part_grids[1];
+    const int parts = spending.patterns[0] * spending.part_plans[0] + spending.patterns[1] * spending.part_plans[1];
+    return (spending.guesses + (spending.coarse ? kCoarse : 0) + parts) * (spending.both_ends ? 2 : 1);
 }
 
 struct Found {
@@ -133,7 +137,8 @@ private:
         return guide_.patterns[plans_.plans[place(candidate.plan)].partitions - 2][place(candidate.pattern)];
     }
     AstcGroup group(int first);
-    void add(int block, int lane, float most);
+    void add(int block, int number, int pattern, unsigned narrow);
+    void add_guesses(int block, int lane, float most, const unsigned* narrow);
     void guess();
     void guess_parts(int partitions, float worth);
     void fit(const AstcSteps& steps, std::size_t begin);
@@ -153,18 +158,30 @@ private:
     WorkingVector<Candidate> some_;
     CoarsePlans coarse_;
     alignas(64) float gathered_[3][kAstcMostPlanned * kAstcLanes];
+    alignas(64) float offsets_[3 * kAstcLanes];
     AstcFits fits_;
     AstcGuesses guesses_;
 };
 
-AstcGroup Batch::group(int first) { return {{values(first, 0), values(first, 1)}, nullptr}; }
+AstcGroup Batch::group(int first) { return {{values(first, 0), values(first, 1)}, nullptr, nullptr}; }
+
+// Adds a candidate with the ends that its narrow partitions ask for.
+void Batch::add(int block, int number, int pattern, unsigned narrow) {
+    const AstcPlan& plan = plans_.plans[place(number)];
+    const bool all = narrow == (1u << plan.partitions) - 1;
+    const int mixed = all ? number : plan.mixed;
+    const bool has_offsets = narrow != 0 && mixed >= 0 && kAstcRangeTable[plan.color_range].levels < 256;
+    if (has_offsets) candidates_.push_back({block, mixed, pattern, 0.0f, narrow});
+    if (!has_offsets || spending_.both_ends) candidates_.push_back({block, number, pattern});
+}
 
 // The guesses of a lane, up to an error, become candidates of a block.
-void Batch::add(int block, int lane, float most) {
+void Batch::add_guesses(int block, int lane, float most, const unsigned* narrow) {
     for (int q = 0; q < guesses_.count; ++q) {
         const std::size_t k = place(q * lanes_ + lane);
         if (guesses_.error[k] >= most) continue;
-        candidates_.push_back({block, static_cast<int>(guesses_.plan[k]), static_cast<int>(guesses_.pattern[k]), 0.0f});
+        add(block, static_cast<int>(guesses_.plan[k]), static_cast<int>(guesses_.pattern[k]),
+            narrow != nullptr ? *narrow : static_cast<unsigned>(guesses_.offsets[k]));
     }
 }
 
@@ -179,12 +196,13 @@ void Batch::guess() {
             const float most = std::min(kNone, spending_.likely * (guesses_.error[l] + 1.0f));
             if (guesses_.range[l] <= 0.0f) continue;
             const std::size_t begin = candidates_.size();
-            add(first + l, l, most);
+            const unsigned narrow = guesses_.widest[l] <= kAstcNarrow ? 1 : 0;
+            add_guesses(first + l, l, most, &narrow);
             for (int k = 0; k < coarse_.count; ++k) {
                 const int plan = coarse_.plan[place(k)];
                 const auto is_plan = [plan](const Candidate& added) { return added.plan == plan; };
                 if (std::none_of(candidates_.begin() + static_cast<std::ptrdiff_t>(begin), candidates_.end(), is_plan))
-                    candidates_.push_back({first + l, plan, 0, 0.0f});
+                    add(first + l, plan, 0, narrow);
             }
         }
     }
@@ -195,16 +213,16 @@ void Batch::guess_parts(int partitions, float worth) {
     some_.clear();
     for (int block = 0; block < static_cast<int>(found_.size()); ++block) {
         if (found_[place(block)].error > worth && found_[place(block)].error < kNone)
-            some_.push_back({block, 0, 0, 0.0f});
+            some_.push_back({block, 0, 0});
     }
     for (std::size_t at = 0; at < some_.size(); at += place(lanes_)) {
         const int used = std::min(lanes_, static_cast<int>(some_.size() - at));
         gather(&some_[at], used);
-        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr}, partitions,
-                            spending_.patterns[partitions - 2], guesses_);
+        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr, nullptr}, partitions,
+                            spending_.patterns[partitions - 2], spending_.part_plans[partitions - 2], guesses_);
         for (int l = 0; l < used; ++l) {
             const int block = some_[at + place(l)].block;
-            add(block, l, found_[place(block)].error);
+            add_guesses(block, l, found_[place(block)].error, nullptr);
         }
     }
 }
@@ -228,13 +246,18 @@ void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
         for (int k = 0; k < texels_; ++k)
             gathered_[2][k * lanes_ + l] = static_cast<float>((later[0] >> k & 1) + 2 * (later[1] >> k & 1));
     }
-    fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2]}, fits_);
+    for (int p = 0; p < plan.partitions; ++p) {
+        for (int l = 0; l < lanes_; ++l)
+            offsets_[p * lanes_ + l] = static_cast<float>(candidates[std::min(l, used - 1)].offsets >> p & 1);
+    }
+    fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2], offsets_}, fits_);
     for (int l = 0; l < used; ++l) {
         Found& found = found_[place(candidates[l].block)];
         candidates[l].error = fits_.error[l];
         if (fits_.error[l] >= found.error) continue;
         found.error = fits_.error[l];
         found.plan = candidates[l].plan;
+        found.content.offsets = candidates[l].offsets;
         if (plan.partitions > 1) found.content.pattern = pattern_of(candidates[l]).index;
         for (int p = 0; p < plan.mode.planes; ++p) {
             for (int w = 0; w < plan.grid->weights; ++w)

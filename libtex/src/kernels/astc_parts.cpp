@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/astc_parts.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/astc_parts.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "kernels/astc_shape-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex::inline v1 {
+namespace HWY_NAMESPACE {
+
+// Of a partition: the energy along the direction in which it differs most, and across.
+struct AstcAxes {
+    FloatVec along, across;
+};
+HWY_INLINE AstcAxes AxesOf(float count, FloatVec x, FloatVec y, FloatVec xx, FloatVec xy, FloatVec yy) {
+    const FloatTag d;
+    const FloatVec over = AstcNumber(1.0f / count), two = AstcNumber(0.5f);
+    const FloatVec a = hn::Sub(xx, hn::Mul(hn::Mul(x, x), over)), b = hn::Sub(xy, hn::Mul(hn::Mul(x, y), over));
+    const FloatVec c = hn::Sub(yy, hn::Mul(hn::Mul(y, y), over));
+    const FloatVec half = hn::Mul(hn::Sub(a, c), two), middle = hn::Mul(hn::Add(a, c), two);
+    const FloatVec root = hn::Sqrt(hn::Add(hn::Mul(half, half), hn::Mul(b, b)));
+    return {hn::Add(middle, root), hn::Max(hn::Sub(middle, root), hn::Zero(d))};
+}
+
+// Patterns are ranked with the noise of 4 or 5 levels.
+inline constexpr float kAstcRankNoise = 0.05f;
+
+// Ranks the patterns. Of the best ones, `plan` becomes the number and `pattern` the energy along the lines.
+void RankPatterns(const AstcGuide& guide, const AstcShape& shape, int partitions, AstcGuesses& best) {
+    const FloatTag d;
+    const std::vector<AstcPattern>& all = guide.patterns[partitions - 2];
+    const std::size_t lanes = hn::Lanes(d);
+    const int texels = guide.plans->block.width * guide.plans->block.height;
+    alignas(64) float product[3][kAstcMostPlanned * kAstcLanes];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(texels) * lanes; k += lanes) {
+        const FloatVec x = hn::Load(d, shape.v[0] + k), y = hn::Load(d, shape.v[1] + k);
+        hn::Store(hn::Mul(x, x), d, product[0] + k);
+        hn::Store(hn::Mul(x, y), d, product[1] + k);
+        hn::Store(hn::Mul(y, y), d, product[2] + k);
+    }
+    ClearGuesses(best);
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        // The first partition is what the others leave.
+        FloatVec x1 = hn::Zero(d), y1 = x1, xx1 = shape.xx, xy1 = shape.xy, yy1 = shape.yy, along = x1, across = x1;
+        int first = texels;
+        for (int p = 0; p < partitions - 1; ++p) {
+            FloatVec x = hn::Zero(d), y = x, xx = x, xy = x, yy = x;
+            int count = 0;
+            for (int k = 0; k < texels; ++k) {
+                if ((all[n].later[p] >> k & 1) == 0) continue;
+                const std::size_t at = static_cast<std::size_t>(k) * lanes;
+                ++count;
+                x = hn::Add(x, hn::Load(d, shape.v[0] + at));
+                y = hn::Add(y, hn::Load(d, shape.v[1] + at));
+                xx = hn::Add(xx, hn::Load(d, product[0] + at));
+                xy = hn::Add(xy, hn::Load(d, product[1] + at));
+                yy = hn::Add(yy, hn::Load(d, product[2] + at));
+            }
+            const AstcAxes axes = AxesOf(static_cast<float>(count), x, y, xx, xy, yy);
+            along = hn::Add(along, axes.along);
+            across = hn::Add(across, axes.across);
+            x1 = hn::Sub(x1, x);
+            y1 = hn::Sub(y1, y);
+            xx1 = hn::Sub(xx1, xx);
+            xy1 = hn::Sub(xy1, xy);
+            yy1 = hn::Sub(yy1, yy);
+            first -= count;
+        }
+        const AstcAxes axes = AxesOf(static_cast<float>(first), x1, y1, xx1, xy1, yy1);
+        along = hn::Add(along, axes.along);
+        across = hn::Add(across, axes.across);
+        const FloatVec rank = hn::Add(across, hn::Mul(along, AstcNumber(kAstcRankNoise)));
+        AddGuess(rank, static_cast<int>(n), along, best);
+    }
+}
+
+// Texels of patterns, which differ by block, beside the middles of their partitions.
+struct AstcPartShape {
+    // Along the lines of partitions; x; y.
+    alignas(64) float field[3][kAstcMostPlanned * kAstcLanes];
+    FloatVec line_range, ranges;  // the mean over the texels of the squared ranges of their partitions
+    FloatVec narrow, narrow_share;  // bits of the partitions that are narrow; how many of all that is
+    FloatVec coarse[kAstcCoarseLevels];  // what 2, 3 ... levels leave along the lines, of what they leave of even spreads
+};
+
+// Of a texel's value, where it is not inside, another one.
+HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec other) {
+    return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
+}
+
+struct AstcSpan {
+    FloatVec least, greatest;
+};
+HWY_INLINE AstcSpan SpanOf(const float* value, const float* part, int p, std::size_t end) {
+    const FloatTag d;
+    AstcSpan span = {AstcNumber(1e6f), AstcNumber(-1e6f)};
+    for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
+        const FloatVec v = hn::Load(d, value + k), of = hn::Load(d, part + k);
+        span.least = hn::Min(span.least, AstcInside(of, p, v, span.least));
+        span.greatest = hn::Max(span.greatest, AstcInside(of, p, v, span.greatest));
+    }
+    return span;
+}
+
+HWY_INLINE void MovePart(float* value, const float* part, int p, FloatVec by, std::size_t end) {
+    const FloatTag d;
+    for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
+        const FloatVec v = hn::Load(d, value + k);
+        hn::Store(AstcInside(hn::Load(d, part + k), p, hn::Sub(v, by), v), d, value + k);
+    }
+}
+
+// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle.
+HWY_INLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
+                                std::size_t end) {
+    const FloatTag d;
+    const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
+    const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);
+    FloatVec sum = hn::Zero(d);
+    for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
+        const FloatVec level = hn::Add(hn::Mul(hn::Load(d, field + k), over), middle);
+        const FloatVec off = hn::Sub(hn::Sub(level, AstcNumber(0.5f)), hn::Floor(level));
+        sum = hn::Add(sum, AstcInside(hn::Load(d, part + k), p, hn::Mul(off, off), hn::Zero(d)));
+    }
+    return hn::Mul(sum, hn::Mul(step, step));
+}
+
+void MeasureParts(const AstcShape& shape, const float* part, int partitions, int texels, AstcPartShape& made) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
+    const FloatVec zero = hn::Zero(d), one = AstcNumber(1.0f);
+    made.line_range = made.ranges = made.narrow = made.narrow_share = zero;
+    FloatVec leave[kAstcCoarseLevels];
+    for (FloatVec& l : leave) l = zero;
+    for (int c = 0; c < 2; ++c) {
+        for (std::size_t k = 0; k < end; k += lanes) hn::Store(hn::Load(d, shape.v[c] + k), d, made.field[c + 1] + k);
+    }
+    for (int p = 0; p < partitions; ++p) {
+        FloatVec n = zero, x = zero, y = zero, xx = zero, xy = zero, yy = zero;
+        for (std::size_t k = 0; k < end; k += lanes) {
+            const FloatVec in = AstcInside(hn::Load(d, part + k), p, one, zero);
+            const FloatVec u = hn::Load(d, shape.v[0] + k), v = hn::Load(d, shape.v[1] + k);
+            const FloatVec inside_u = hn::Mul(in, u), inside_v = hn::Mul(in, v);
+            n = hn::Add(n, in);
+            x = hn::Add(x, inside_u);
+            y = hn::Add(y, inside_v);
+            xx = hn::Add(xx, hn::Mul(inside_u, u));
+            xy = hn::Add(xy, hn::Mul(inside_u, v));
+            yy = hn::Add(yy, hn::Mul(inside_v, v));
+        }
+        const FloatVec over = hn::Div(one, hn::Max(n, one));
+        const AstcDirection line =
+            DirectionOf(hn::Sub(xx, hn::Mul(hn::Mul(x, x), over)), hn::Sub(xy, hn::Mul(hn::Mul(x, y), over)),
+                        hn::Sub(yy, hn::Mul(hn::Mul(y, y), over)));
+        for (std::size_t k = 0; k < end; k += lanes) {
+            const FloatVec along =
+                hn::Add(hn::Mul(hn::Load(d, shape.v[0] + k), line.cos), hn::Mul(hn::Load(d, shape.v[1] + k), line.sin));
+            hn::Store(AstcInside(hn::Load(d, part + k), p, along, hn::Load(d, made.field[0] + k)), d,
+                      made.field[0] + k);
+        }
+        FloatVec range[3];
+        for (int f = 0; f < 3; ++f) {
+            const AstcSpan span = SpanOf(made.field[f], part, p, end);
+            range[f] = hn::Sub(span.greatest, span.least);
+            const FloatVec middle = hn::Mul(hn::Add(span.greatest, span.least), AstcNumber(0.5f));
+            MovePart(made.field[f], part, p, middle, end);
+        }
+        const FloatVec share = hn::Mul(n, AstcNumber(1.0f / static_cast<float>(texels)));
+        made.line_range = hn::Add(made.line_range, hn::Mul(share, hn::Mul(range[0], range[0])));
+        const FloatVec both = hn::Add(hn::Mul(range[1], range[1]), hn::Mul(range[2], range[2]));
+        made.ranges = hn::Add(made.ranges, hn::Mul(share, both));
+        const auto is_narrow = hn::Le(hn::Max(range[1], range[2]), AstcNumber(kAstcNarrow));
+        made.narrow = hn::Add(made.narrow, hn::IfThenElseZero(is_narrow, AstcNumber(static_cast<float>(1 << p))));
+        made.narrow_share = hn::Add(
+            made.narrow_share, hn::IfThenElseZero(is_narrow, AstcNumber(1.0f / static_cast<float>(partitions))));
+        for (int l = 0; l < kAstcCoarseLevels; ++l) {
+            leave[l] =
+                hn::Add(leave[l], CoarseLeave(made.field[0], part, p, range[0], static_cast<float>(l + 1), end));
+        }
+    }
+    for (int l = 0; l < kAstcCoarseLevels; ++l) {
+        const auto steps = static_cast<float>(l + 1);
+        const FloatVec even = hn::Mul(made.line_range, AstcNumber(static_cast<float>(texels) / (12.0f * steps * steps)));
+        made.coarse[l] = hn::Min(one, hn::Div(leave[l], hn::Max(even, AstcNumber(1e-3f))));
+    }
+}
+
+// Guesses all plans for a pattern of each block. Keeps the `guesses.count` best.
+void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec across, int partitions,
+                AstcGuesses& guesses) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const Extent block = guide.plans->block;
+    const std::size_t end = static_cast<std::size_t>(block.width * block.height) * lanes;
+    FloatVec energy[3];
+    for (int f = 0; f < 3; ++f) {
+        energy[f] = hn::Zero(d);
+        for (std::size_t k = 0; k < end; k += lanes) {
+            const FloatVec v = hn::Load(d, shape.field[f] + k);
+            energy[f] = hn::Add(energy[f], hn::Mul(v, v));
+        }
+    }
+    alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[2 * 64 * kAstcLanes];
+    const float* const channels[2] = {shape.field[1], shape.field[2]};
+    const float* const line[2] = {shape.field[0], shape.field[0]};
+    int width = 0;
+    for (const AstcGuide::Grid& grid : guide.of_parts[partitions - 2]) {
+        FloatVec one = hn::Zero(d), two = one;
+        if (grid.extent != block) {
+            if (grid.extent.width != width) {
+                ProjectRows(guide, grid.extent.width, channels, rows);
+                ProjectRows(guide, grid.extent.width, line, line_rows);
+            }
+            width = grid.extent.width;
+            one = hn::Max(one, hn::Sub(energy[0], ProjectColumns(guide, grid.extent, line_rows).xx));
+            const AstcEnergies in = ProjectColumns(guide, grid.extent, rows);
+            two = hn::Max(two, hn::Sub(hn::Add(energy[1], energy[2]), hn::Add(in.xx, in.yy)));
+        }
+        one = hn::Add(one, across);
+        for (const AstcGuide::Choice& choice : grid.choices) {
+            const FloatVec better = hn::Mul(shape.narrow_share, AstcNumber(choice.ends - choice.offsets));
+            const FloatVec ends = hn::Sub(AstcNumber(choice.ends), better);
+            FloatVec noise = hn::Mul(AstcNumber(choice.weights), choice.planes == 2 ? shape.ranges : shape.line_range);
+            if (choice.coarse >= 0 && choice.planes == 1) noise = hn::Mul(noise, shape.coarse[choice.coarse]);
+            AddGuess(hn::Add(choice.planes == 2 ? two : one, hn::Add(noise, ends)), choice.plan, shape.narrow, guesses);
+        }
+    }
+}
+
+void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns, int plans,
+                       AstcGuesses& guesses) {
+    const std::vector<AstcPattern>& all = guide.patterns[partitions - 2];
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const int texels = guide.plans->block.width * guide.plans->block.height;
+    AstcShape shape;
+    MeasureShape(group, texels, shape);
+    AstcGuesses best;
+    best.count = patterns;
+    ClearGuesses(best);
+    RankPatterns(guide, shape, partitions, best);
+    guesses.count = patterns * plans;
+    alignas(64) float part[kAstcMostPlanned * kAstcLanes];
+    AstcPartShape parts;
+    AstcGuesses of_pattern;
+    of_pattern.count = plans;
+    for (int q = 0; q < patterns; ++q) {
+        const std::size_t at = static_cast<std::size_t>(q) * lanes;
+        for (std::size_t l = 0; l < lanes; ++l) {
+            const auto& later = all[static_cast<std::size_t>(best.plan[at + l])].later;
+            for (int k = 0; k < texels; ++k) {
+                part[static_cast<std::size_t>(k) * lanes + l] =
+                    static_cast<float>((later[0] >> k & 1) + 2 * (later[1] >> k & 1));
+            }
+        }
+        MeasureParts(shape, part, partitions, texels, parts);
+        const FloatVec along = hn::Load(d, best.pattern + at);
+        const FloatVec across = hn::Sub(hn::Load(d, best.error + at), hn::Mul(along, AstcNumber(kAstcRankNoise)));
+        ClearGuesses(of_pattern);
+        GuessParts(guide, parts, across, partitions, of_pattern);
+        for (int k = 0; k < plans; ++k) {
+            const std::size_t from = static_cast<std::size_t>(k) * lanes;
+            const std::size_t to = static_cast<std::size_t>(q * plans + k) * lanes;
+            hn::Store(hn::Load(d, of_pattern.error + from), d, guesses.error + to);
+            hn::Store(hn::Load(d, of_pattern.plan + from), d, guesses.plan + to);
+            hn::Store(hn::Load(d, of_pattern.pattern + from), d, guesses.offsets + to);
+            hn::Store(hn::Load(d, best.plan + at), d, guesses.pattern + to);
+        }
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex::inline v1
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tex::inline v1 {
+
+HWY_EXPORT(GuessAstcPatterns);
+
+void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns, int plans,
+                         AstcGuesses& guesses) {
+    HWY_DYNAMIC_DISPATCH(GuessAstcPatterns)(guide, group, partitions, patterns, plans, guesses);
+}
+
+}  // namespace tex::inline v1
+#endif

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// astc_shape-inl.h: what the guesses of ASTC measure of blocks side by side. Include it after hwy/highway.h, once for
+// each target.
+
+#if defined(TEX_KERNELS_ASTC_SHAPE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TEX_KERNELS_ASTC_SHAPE_INL_H
+#undef TEX_KERNELS_ASTC_SHAPE_INL_H
+#else
+#define TEX_KERNELS_ASTC_SHAPE_INL_H
+#endif
+
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "kernels/astc_guess.h"
+#include "kernels/vectors-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tex::inline v1 {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+HWY_INLINE FloatVec AstcNumber(float value) { return hn::Set(FloatTag(), value); }
+
+// Inserts what is better into the guesses, which are sorted.
+HWY_INLINE void AddGuess(FloatVec error, int plan, FloatVec pattern, AstcGuesses& guesses) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::size_t last = static_cast<std::size_t>(guesses.count - 1) * lanes;
+    if (hn::AllFalse(d, hn::Lt(error, hn::Load(d, guesses.error + last)))) return;
+    FloatVec number = AstcNumber(static_cast<float>(plan));
+    for (std::size_t at = 0; at <= last; at += lanes) {
+        const FloatVec e = hn::Load(d, guesses.error + at), n = hn::Load(d, guesses.plan + at),
+                       p = hn::Load(d, guesses.pattern + at);
+        const auto better = hn::Lt(error, e);
+        hn::Store(hn::IfThenElse(better, error, e), d, guesses.error + at);
+        hn::Store(hn::IfThenElse(better, number, n), d, guesses.plan + at);
+        hn::Store(hn::IfThenElse(better, pattern, p), d, guesses.pattern + at);
+        error = hn::IfThenElse(better, e, error);
+        number = hn::IfThenElse(better, n, number);
+        pattern = hn::IfThenElse(better, p, pattern);
+    }
+}
+
+HWY_INLINE void ClearGuesses(AstcGuesses& guesses) {
+    const std::size_t count = static_cast<std::size_t>(guesses.count) * hn::Lanes(FloatTag());
+    for (std::size_t k = 0; k < count; ++k) {
+        guesses.error[k] = 1e30f;
+        guesses.plan[k] = guesses.pattern[k] = 0;
+    }
+}
+
+// The direction in which texels differ most, of sums of products without the mean; and the energy across it.
+struct AstcDirection {
+    FloatVec cos, sin, across;
+};
+HWY_INLINE AstcDirection DirectionOf(FloatVec xx, FloatVec xy, FloatVec yy) {
+    const FloatTag d;
+    const FloatVec half = hn::Mul(hn::Sub(xx, yy), AstcNumber(0.5f));
+    const FloatVec root = hn::Sqrt(hn::Add(hn::Mul(half, half), hn::Mul(xy, xy)));
+    // The eigenvector of the greater eigenvalue: of two forms, that which does not vanish.
+    const auto wide = hn::Ge(half, hn::Zero(d));
+    const FloatVec dx = hn::IfThenElse(wide, hn::Add(root, half), xy);
+    const FloatVec dy = hn::IfThenElse(wide, xy, hn::Sub(root, half));
+    const FloatVec square = hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy));
+    const auto is_line = hn::Gt(square, AstcNumber(1e-12f));
+    const FloatVec scale = hn::Div(AstcNumber(1.0f), hn::Sqrt(hn::IfThenElse(is_line, square, AstcNumber(1.0f))));
+    return {hn::IfThenElse(is_line, hn::Mul(dx, scale), AstcNumber(1.0f)),
+            hn::IfThenElseZero(is_line, hn::Mul(dy, scale)),
+            hn::Max(hn::Sub(hn::Mul(hn::Add(xx, yy), AstcNumber(0.5f)), root), hn::Zero(d))};
+}
+
+// Two channels without their means, and what is known about them.
+struct AstcShape {
+    alignas(64) float v[2][kAstcMostPlanned * kAstcLanes];
+    FloatVec xx, yy, xy;          // sums of products
+    FloatVec cos, sin;            // the direction in which they differ most
+    FloatVec across;              // the energy perpendicular to it
+    FloatVec ranges, line_range;  // squared: of both channels together, along the direction
+    FloatVec least[2], greatest[2];
+};
+
+HWY_INLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shape) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
+    const FloatVec over = AstcNumber(1.0f / static_cast<float>(texels));
+    FloatVec ranges = hn::Zero(d);
+    for (int c = 0; c < 2; ++c) {
+        FloatVec sum = hn::Zero(d), least = AstcNumber(1e6f), greatest = AstcNumber(-1e6f);
+        for (std::size_t k = 0; k < end; k += lanes) {
+            const FloatVec v = hn::Load(d, group.value[c] + k);
+            sum = hn::Add(sum, v);
+            least = hn::Min(least, v);
+            greatest = hn::Max(greatest, v);
+        }
+        const FloatVec mean = hn::Mul(sum, over), range = hn::Sub(greatest, least);
+        ranges = hn::Add(ranges, hn::Mul(range, range));
+        shape.least[c] = hn::Sub(least, mean);
+        shape.greatest[c] = hn::Sub(greatest, mean);
+        for (std::size_t k = 0; k < end; k += lanes)
+            hn::Store(hn::Sub(hn::Load(d, group.value[c] + k), mean), d, shape.v[c] + k);
+    }
+    FloatVec xx = hn::Zero(d), yy = xx, xy = xx;
+    for (std::size_t k = 0; k < end; k += lanes) {
+        const FloatVec x = hn::Load(d, shape.v[0] + k), y = hn::Load(d, shape.v[1] + k);
+        xx = hn::Add(xx, hn::Mul(x, x));
+        xy = hn::Add(xy, hn::Mul(x, y));
+        yy = hn::Add(yy, hn::Mul(y, y));
+    }
+    const AstcDirection line = DirectionOf(xx, xy, yy);
+    shape.cos = line.cos;
+    shape.sin = line.sin;
+    shape.across = line.across;
+    FloatVec least = AstcNumber(1e6f), greatest = AstcNumber(-1e6f);
+    for (std::size_t k = 0; k < end; k += lanes) {
+        const FloatVec along =
+            hn::Add(hn::Mul(hn::Load(d, shape.v[0] + k), shape.cos), hn::Mul(hn::Load(d, shape.v[1] + k), shape.sin));
+        least = hn::Min(least, along);
+        greatest = hn::Max(greatest, along);
+    }
+    const FloatVec range = hn::Sub(greatest, least);
+    shape.line_range = hn::Mul(range, range);
+    shape.ranges = ranges;
+    shape.xx = xx;
+    shape.xy = xy;
+    shape.yy = yy;
+}
+
+// Replaces each row of texels by its coordinates in the space that so many weights span.
+HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* rows) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const Extent block = guide.plans->block;
+    for (int c = 0; c < 2; ++c) {
+        for (int j = 0; j < block.height; ++j) {
+            const float* const from = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
+            for (int w = 0; w < weights; ++w) {
+                FloatVec sum = hn::Zero(d);
+                for (int i = 0; i < block.width; ++i) {
+                    const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
+                    sum = hn::Add(sum, hn::Mul(AstcNumber(guide.basis[0][weights][w][i]), v));
+                }
+                hn::Store(sum, d, rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes);
+            }
+        }
+    }
+}
+
+// The sums of products in the space of a grid, of rows that are projected.
+struct AstcEnergies {
+    FloatVec xx, yy, xy;
+};
+HWY_INLINE AstcEnergies ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const int height = guide.plans->block.height;
+    AstcEnergies e = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (int w = 0; w < grid.width; ++w) {
+        for (int h = 0; h < grid.height; ++h) {
+            FloatVec sum[2] = {hn::Zero(d), hn::Zero(d)};
+            for (int j = 0; j < height; ++j) {
+                const FloatVec share = AstcNumber(guide.basis[1][grid.height][h][j]);
+                for (int c = 0; c < 2; ++c) {
+                    const float* const from = rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes;
+                    sum[c] = hn::Add(sum[c], hn::Mul(share, hn::Load(d, from)));
+                }
+            }
+            e.xx = hn::Add(e.xx, hn::Mul(sum[0], sum[0]));
+            e.yy = hn::Add(e.yy, hn::Mul(sum[1], sum[1]));
+            e.xy = hn::Add(e.xy, hn::Mul(sum[0], sum[1]));
+        }
+    }
+    return e;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tex::inline v1
+HWY_AFTER_NAMESPACE();
+
+#endif  // TEX_KERNELS_ASTC_SHAPE_INL_H
