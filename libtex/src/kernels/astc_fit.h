@@ -21,6 +21,7 @@ struct AstcGroup {
     const float* partition = nullptr;
     // By partition and block: 1 where endpoints are stored as bases and offsets, otherwise 0.
     const float* offset = nullptr;
+    const float* turn = nullptr;  // 1 where the endpoints to begin with change places
 };
 
 // What fits each block: weights by plane, weight and block; endpoints by partition, channel, end and block.

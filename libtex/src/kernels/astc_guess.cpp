@@ -36,6 +36,22 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
     return left;
 }
 
+void MeasureCoarse(const AstcShape& shape, int texels, FloatVec coarse[kAstcCoarseLevels]) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
+    alignas(64) float line[kAstcMostPlanned * kAstcLanes];
+    for (std::size_t k = 0; k < end; k += lanes) {
+        const FloatVec x = hn::Mul(hn::Load(d, shape.v[0] + k), shape.cos);
+        const FloatVec y = hn::Mul(hn::Load(d, shape.v[1] + k), shape.sin);
+        hn::Store(hn::Sub(hn::Add(x, y), shape.line_middle), d, line + k);
+    }
+    for (int l = 0; l < kAstcCoarseLevels; ++l) {
+        const FloatVec leave =
+            CoarseLeave(line, nullptr, 0, hn::Sqrt(shape.line_range), static_cast<float>(l + 1), end);
+        coarse[l] = CoarseShare(leave, shape.line_range, l, texels);
+    }
+}
+
 HWY_INLINE FloatVec AstcPlaneValue(FloatVec n, FloatVec scale) {
     const FloatVec one = AstcNumber(1.0f), minus_one = AstcNumber(-1.0f);
     const FloatVec low = hn::IfThenElse(hn::Lt(n, minus_one), minus_one, n);
@@ -72,17 +88,19 @@ void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gues
     const auto is_narrow = hn::Le(widest, AstcNumber(kAstcNarrow));
     alignas(64) float rows[2 * 64 * kAstcLanes];
     const float* const channels[2] = {shape.v[0], shape.v[1]};
+    FloatVec coarse[kAstcCoarseLevels];
+    if (guide.measures_coarse) MeasureCoarse(shape, block.width * block.height, coarse);
     int width = 0;
     for (const AstcGuide::Grid& grid : guide.grids) {
         // All energies inside the space of the grid; the rest is error.
-        AstcEnergies in = {shape.xx, shape.yy, shape.xy};
+        FloatVec in[3] = {shape.xx, shape.yy, shape.xy};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows(guide, grid.extent.width, channels, rows);
+            if (grid.extent.width != width) ProjectRows(guide, grid.extent.width, channels, 2, rows);
             width = grid.extent.width;
-            in = ProjectColumns(guide, grid.extent, rows);
+            ProjectColumns(guide, grid.extent, rows, 2, in);
         }
-        const FloatVec out_x = hn::Sub(shape.xx, in.xx), out_y = hn::Sub(shape.yy, in.yy);
-        const FloatVec out_xy = hn::Sub(shape.xy, in.xy);
+        const FloatVec out_x = hn::Sub(shape.xx, in[0]), out_y = hn::Sub(shape.yy, in[1]);
+        const FloatVec out_xy = hn::Sub(shape.xy, in[2]);
         const FloatVec two = hn::Max(hn::Add(out_x, out_y), hn::Zero(d));
         const FloatVec cross = hn::Mul(hn::Mul(shape.cos, shape.sin), hn::Add(out_xy, out_xy));
         const FloatVec along = hn::Add(
@@ -92,7 +110,10 @@ void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gues
         for (const AstcGuide::Choice& choice : grid.choices) {
             const FloatVec range = choice.planes == 2 ? shape.ranges : shape.line_range;
             const FloatVec ends = hn::IfThenElse(is_narrow, AstcNumber(choice.offsets), AstcNumber(choice.ends));
-            FloatVec noise = hn::Add(hn::Mul(AstcNumber(choice.weights), range), ends);
+            FloatVec noise = hn::Mul(AstcNumber(choice.weights), range);
+            if (guide.measures_coarse && choice.coarse >= 0 && choice.planes == 1)
+                noise = hn::Mul(noise, coarse[choice.coarse]);
+            noise = hn::Add(noise, ends);
             if (choice.levels > 0) noise = hn::Min(noise, LevelsLeave(shape, choice.levels, block));
             AddGuess(hn::Add(choice.planes == 2 ? two : one, noise), choice.plan, hn::Zero(d), guesses);
         }

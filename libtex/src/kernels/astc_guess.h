@@ -25,7 +25,8 @@ struct AstcGuesses {
     alignas(64) float error[kAstcMostGuesses * kAstcLanes];
     alignas(64) float plan[kAstcMostGuesses * kAstcLanes];
     alignas(64) float pattern[kAstcMostGuesses * kAstcLanes];
-    alignas(64) float offsets[kAstcMostGuesses * kAstcLanes];  // a bit for each partition that is narrow
+    // A bit for each partition that is narrow; 16 times as high, one if its line should be turned.
+    alignas(64) float bits[kAstcMostGuesses * kAstcLanes];
     alignas(64) float range[kAstcLanes];   // of both channels, the sum of the squares; guess_astc() sets it
     alignas(64) float widest[kAstcLanes];  // the greater one of the channels' ranges; guess_astc() sets it
 };

@@ -61,6 +61,7 @@ void make_basis(int texels, int weights, float basis[8][8]) {
 AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
     AstcGuide guide{};
     guide.plans = &plans;
+    guide.measures_coarse = reach.measures_coarse;
     for (int number = 0; number < static_cast<int>(plans.plans.size()); ++number) {
         const AstcGuide::Choice choice = choice_of(plans, number);
         const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];

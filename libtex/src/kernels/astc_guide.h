@@ -28,6 +28,7 @@ struct AstcGuide {
         std::vector<Choice> choices;
     };
     const AstcPlans* plans = nullptr;
+    bool measures_coarse = false;
     std::vector<Grid> grids;  // with one partition, by width
     // With two partitions; with three.
     std::vector<Grid> of_parts[2];  // by width
@@ -40,6 +41,7 @@ struct AstcGuide {
 struct AstcReach {
     int most_weights = 64;   // along an axis, of grids with one partition that are not full
     int pattern_steps = 1;   // of so many patterns, one
+    bool measures_coarse = false;  // with one partition, too
 };
 [[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
 

@@ -46,7 +46,7 @@ public:
     using Ends = AstcEnds<kChannels, kPartitions>;
 
     AstcLine(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, const float* v0, const float* v1)
-        : plan_(plan), steps_(steps), partition_(group.partition), value_{v0, v1} {
+        : plan_(plan), steps_(steps), partition_(group.partition), turn_(group.turn), value_{v0, v1} {
         best_.error = hn::Set(d_, 1e30f);
         for (int p = 0; p < kPartitions; ++p) {
             offset_[p] = hn::Load(d_, group.offset + at(p));
@@ -132,6 +132,7 @@ private:
     const AstcPlan& plan_;
     const AstcSteps& steps_;
     const float* const partition_;
+    const float* const turn_;
     const float* const value_[2];
     AstcFloat offset_[kPartitions];
     enum Use { kNoOffsets, kOffsets, kBoth } use_[kPartitions];  // of all blocks

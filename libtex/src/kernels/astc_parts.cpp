@@ -83,15 +83,11 @@ void RankPatterns(const AstcGuide& guide, const AstcShape& shape, int partitions
 struct AstcPartShape {
     // Along the lines of partitions; x; y.
     alignas(64) float field[3][kAstcMostPlanned * kAstcLanes];
+    alignas(64) float line[3][kAstcMostPlanned * kAstcLanes];  // the first one, for each partition; 0 outside
     FloatVec line_range, ranges;  // the mean over the texels of the squared ranges of their partitions
     FloatVec narrow, narrow_share;  // bits of the partitions that are narrow; how many of all that is
     FloatVec coarse[kAstcCoarseLevels];  // what 2, 3 ... levels leave along the lines, of what they leave of even spreads
 };
-
-// Of a texel's value, where it is not inside, another one.
-HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec other) {
-    return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
-}
 
 struct AstcSpan {
     FloatVec least, greatest;
@@ -113,21 +109,6 @@ HWY_INLINE void MovePart(float* value, const float* part, int p, FloatVec by, st
         const FloatVec v = hn::Load(d, value + k);
         hn::Store(AstcInside(hn::Load(d, part + k), p, hn::Sub(v, by), v), d, value + k);
     }
-}
-
-// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle.
-HWY_INLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
-                                std::size_t end) {
-    const FloatTag d;
-    const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
-    const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);
-    FloatVec sum = hn::Zero(d);
-    for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
-        const FloatVec level = hn::Add(hn::Mul(hn::Load(d, field + k), over), middle);
-        const FloatVec off = hn::Sub(hn::Sub(level, AstcNumber(0.5f)), hn::Floor(level));
-        sum = hn::Add(sum, AstcInside(hn::Load(d, part + k), p, hn::Mul(off, off), hn::Zero(d)));
-    }
-    return hn::Mul(sum, hn::Mul(step, step));
 }
 
 void MeasureParts(const AstcShape& shape, const float* part, int partitions, int texels, AstcPartShape& made) {
@@ -178,16 +159,43 @@ void MeasureParts(const AstcShape& shape, const float* part, int partitions, int
         made.narrow = hn::Add(made.narrow, hn::IfThenElseZero(is_narrow, AstcNumber(static_cast<float>(1 << p))));
         made.narrow_share = hn::Add(
             made.narrow_share, hn::IfThenElseZero(is_narrow, AstcNumber(1.0f / static_cast<float>(partitions))));
+        for (std::size_t k = 0; k < end; k += lanes) {
+            const FloatVec along = hn::Load(d, made.field[0] + k);
+            hn::Store(AstcInside(hn::Load(d, part + k), p, along, zero), d, made.line[p] + k);
+        }
         for (int l = 0; l < kAstcCoarseLevels; ++l) {
             leave[l] =
                 hn::Add(leave[l], CoarseLeave(made.field[0], part, p, range[0], static_cast<float>(l + 1), end));
         }
     }
-    for (int l = 0; l < kAstcCoarseLevels; ++l) {
-        const auto steps = static_cast<float>(l + 1);
-        const FloatVec even = hn::Mul(made.line_range, AstcNumber(static_cast<float>(texels) / (12.0f * steps * steps)));
-        made.coarse[l] = hn::Min(one, hn::Div(leave[l], hn::Max(even, AstcNumber(1e-3f))));
+    for (int l = 0; l < kAstcCoarseLevels; ++l) made.coarse[l] = CoarseShare(leave[l], made.line_range, l, texels);
+}
+
+// What a grid cannot express of lines whose directions are free: the directions of the second and third partitions are
+// turned where that helps, which bits say.
+struct AstcTurned {
+    FloatVec left, turns;
+};
+HWY_INLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const float* rows, int partitions,
+                                  FloatVec energy) {
+    const FloatTag d;
+    const FloatVec zero = hn::Zero(d);
+    FloatVec sum[6];
+    ProjectColumns(guide, grid, rows, partitions, sum);
+    if (partitions == 2) {
+        const FloatVec cross = hn::Abs(sum[2]), inside = hn::Add(hn::Add(sum[0], sum[1]), hn::Add(cross, cross));
+        return {hn::Sub(energy, inside), hn::IfThenElseZero(hn::Lt(sum[2], zero), AstcNumber(2.0f))};
     }
+    const FloatVec squares = hn::Add(hn::Add(sum[0], sum[1]), sum[2]);
+    FloatVec most = AstcNumber(-1e30f), turns = zero;
+    for (int turn = 0; turn < 8; turn += 2) {
+        FloatVec cross = (turn & 2) != 0 ? hn::Neg(sum[3]) : sum[3];
+        cross = (turn & 4) != 0 ? hn::Sub(cross, sum[4]) : hn::Add(cross, sum[4]);
+        cross = turn == 2 || turn == 4 ? hn::Sub(cross, sum[5]) : hn::Add(cross, sum[5]);
+        turns = hn::IfThenElse(hn::Gt(cross, most), AstcNumber(static_cast<float>(turn)), turns);
+        most = hn::Max(most, cross);
+    }
+    return {hn::Sub(energy, hn::Add(squares, hn::Add(most, most))), turns};
 }
 
 // Guesses all plans for a pattern of each block. Keeps the `guesses.count` best.
@@ -205,29 +213,33 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
             energy[f] = hn::Add(energy[f], hn::Mul(v, v));
         }
     }
-    alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[2 * 64 * kAstcLanes];
+    const FloatVec energies = hn::Add(energy[1], energy[2]);
+    alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[3 * 64 * kAstcLanes];
     const float* const channels[2] = {shape.field[1], shape.field[2]};
-    const float* const line[2] = {shape.field[0], shape.field[0]};
+    const float* const lines[3] = {shape.line[0], shape.line[1], shape.line[2]};
     int width = 0;
     for (const AstcGuide::Grid& grid : guide.of_parts[partitions - 2]) {
-        FloatVec one = hn::Zero(d), two = one;
+        FloatVec two = hn::Zero(d);
+        AstcTurned one = {two, two};
         if (grid.extent != block) {
             if (grid.extent.width != width) {
-                ProjectRows(guide, grid.extent.width, channels, rows);
-                ProjectRows(guide, grid.extent.width, line, line_rows);
+                ProjectRows(guide, grid.extent.width, channels, 2, rows);
+                ProjectRows(guide, grid.extent.width, lines, partitions, line_rows);
             }
             width = grid.extent.width;
-            one = hn::Max(one, hn::Sub(energy[0], ProjectColumns(guide, grid.extent, line_rows).xx));
-            const AstcEnergies in = ProjectColumns(guide, grid.extent, rows);
-            two = hn::Max(two, hn::Sub(hn::Add(energy[1], energy[2]), hn::Add(in.xx, in.yy)));
+            one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
+            FloatVec in[3];
+            ProjectColumns(guide, grid.extent, rows, 2, in);
+            two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
         }
-        one = hn::Add(one, across);
+        one.left = hn::Add(hn::Max(one.left, hn::Zero(d)), across);
+        const FloatVec bits = hn::Add(shape.narrow, hn::Mul(one.turns, AstcNumber(16.0f)));
         for (const AstcGuide::Choice& choice : grid.choices) {
             const FloatVec better = hn::Mul(shape.narrow_share, AstcNumber(choice.ends - choice.offsets));
             const FloatVec ends = hn::Sub(AstcNumber(choice.ends), better);
             FloatVec noise = hn::Mul(AstcNumber(choice.weights), choice.planes == 2 ? shape.ranges : shape.line_range);
             if (choice.coarse >= 0 && choice.planes == 1) noise = hn::Mul(noise, shape.coarse[choice.coarse]);
-            AddGuess(hn::Add(choice.planes == 2 ? two : one, hn::Add(noise, ends)), choice.plan, shape.narrow, guesses);
+            AddGuess(hn::Add(choice.planes == 2 ? two : one.left, hn::Add(noise, ends)), choice.plan, bits, guesses);
         }
     }
 }
@@ -268,7 +280,7 @@ void GuessAstcPatterns(const AstcGuide& guide, const AstcGroup& group, int parti
             const std::size_t to = static_cast<std::size_t>(q * plans + k) * lanes;
             hn::Store(hn::Load(d, of_pattern.error + from), d, guesses.error + to);
             hn::Store(hn::Load(d, of_pattern.plan + from), d, guesses.plan + to);
-            hn::Store(hn::Load(d, of_pattern.pattern + from), d, guesses.offsets + to);
+            hn::Store(hn::Load(d, of_pattern.pattern + from), d, guesses.bits + to);
             hn::Store(hn::Load(d, best.plan + at), d, guesses.pattern + to);
         }
     }

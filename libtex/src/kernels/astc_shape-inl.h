@@ -80,6 +80,7 @@ struct AstcShape {
     FloatVec across;              // the energy perpendicular to it
     FloatVec ranges, line_range;  // squared: of both channels together, along the direction
     FloatVec least[2], greatest[2];
+    FloatVec line_middle;
 };
 
 HWY_INLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shape) {
@@ -122,18 +123,20 @@ HWY_INLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shap
     }
     const FloatVec range = hn::Sub(greatest, least);
     shape.line_range = hn::Mul(range, range);
+    shape.line_middle = hn::Mul(hn::Add(greatest, least), AstcNumber(0.5f));
     shape.ranges = ranges;
     shape.xx = xx;
     shape.xy = xy;
     shape.yy = yy;
 }
 
-// Replaces each row of texels by its coordinates in the space that so many weights span.
-HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* rows) {
+// Replaces each row of texels of a few channels by its coordinates in the space that so many weights span.
+HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
+                            float* rows) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < count; ++c) {
         for (int j = 0; j < block.height; ++j) {
             const float* const from = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
             for (int w = 0; w < weights; ++w) {
@@ -148,31 +151,59 @@ HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* co
     }
 }
 
-// The sums of products in the space of a grid, of rows that are projected.
-struct AstcEnergies {
-    FloatVec xx, yy, xy;
-};
-HWY_INLINE AstcEnergies ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows) {
+// The sums of products in the space of a grid, of rows that are projected: of two channels xx, yy and xy; of three xx,
+// yy, zz, xy, xz and yz.
+HWY_INLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, int count, FloatVec* e) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const int height = guide.plans->block.height;
-    AstcEnergies e = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (int n = 0; n < 3 * (count - 1); ++n) e[n] = hn::Zero(d);
     for (int w = 0; w < grid.width; ++w) {
         for (int h = 0; h < grid.height; ++h) {
-            FloatVec sum[2] = {hn::Zero(d), hn::Zero(d)};
+            FloatVec sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
             for (int j = 0; j < height; ++j) {
                 const FloatVec share = AstcNumber(guide.basis[1][grid.height][h][j]);
-                for (int c = 0; c < 2; ++c) {
+                for (int c = 0; c < count; ++c) {
                     const float* const from = rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes;
                     sum[c] = hn::Add(sum[c], hn::Mul(share, hn::Load(d, from)));
                 }
             }
-            e.xx = hn::Add(e.xx, hn::Mul(sum[0], sum[0]));
-            e.yy = hn::Add(e.yy, hn::Mul(sum[1], sum[1]));
-            e.xy = hn::Add(e.xy, hn::Mul(sum[0], sum[1]));
+            for (int c = 0; c < count; ++c) e[c] = hn::Add(e[c], hn::Mul(sum[c], sum[c]));
+            e[count] = hn::Add(e[count], hn::Mul(sum[0], sum[1]));
+            if (count < 3) continue;
+            e[4] = hn::Add(e[4], hn::Mul(sum[0], sum[2]));
+            e[5] = hn::Add(e[5], hn::Mul(sum[1], sum[2]));
         }
     }
-    return e;
+}
+
+// Of a texel's value, where it is not inside, another one.
+HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec other) {
+    return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
+}
+
+// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a partition,
+// or of all texels.
+HWY_INLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
+                                std::size_t end) {
+    const FloatTag d;
+    const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
+    const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);
+    FloatVec sum = hn::Zero(d);
+    for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
+        const FloatVec level = hn::Add(hn::Mul(hn::Load(d, field + k), over), middle);
+        const FloatVec off = hn::Sub(hn::Sub(level, AstcNumber(0.5f)), hn::Floor(level));
+        const FloatVec square = hn::Mul(off, off);
+        sum = hn::Add(sum, part == nullptr ? square : AstcInside(hn::Load(d, part + k), p, square, hn::Zero(d)));
+    }
+    return hn::Mul(sum, hn::Mul(step, step));
+}
+
+// That as a share of what they would leave of texels that are evenly spread.
+HWY_INLINE FloatVec CoarseShare(FloatVec leave, FloatVec squared_range, int coarse, int texels) {
+    const auto steps = static_cast<float>(coarse + 1);
+    const FloatVec even = hn::Mul(squared_range, AstcNumber(static_cast<float>(texels) / (12.0f * steps * steps)));
+    return hn::Min(AstcNumber(1.0f), hn::Div(leave, hn::Max(even, AstcNumber(1e-3f))));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -39,6 +39,13 @@ AstcEnds<kChannels, kPartitions> AstcLine<kChannels, kPartitions>::outer_ends() 
         } else {
             outer_ends_of_two(p, ends);
         }
+        if (kPartitions == 1) continue;
+        const auto turns = hn::Gt(hn::Load(d_, turn_ + at(p)), number(0.5f));
+        for (int c = 0; c < kChannels; ++c) {
+            const AstcFloat first = ends.at[p][c][0], second = ends.at[p][c][1];
+            ends.at[p][c][0] = hn::IfThenElse(turns, second, first);
+            ends.at[p][c][1] = hn::IfThenElse(turns, first, second);
+        }
     }
     return ends;
 }

@@ -35,7 +35,6 @@ struct Spending {
     float worth = 0;   // the squared error of a texel from which several partitions are tried
     int polished = 0;  // the best of all of these are fitted again, with
     AstcSteps polish;
-    bool coarse = false;  // also tries the plans of coarse_plans()
     bool both_ends = false;  // of narrow partitions, also tries endpoints without offsets
 };
 
@@ -43,10 +42,10 @@ Spending spending_of(Format format, Effort effort) {
     // Many weights make up for endpoints that are not the best to begin with.
     const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {}, {8, 1}, 0, 0, {}, false};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {}, {8, 1, false}, 0, 0, {}, false};
         case Effort::best:
-            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {12, 4}, {8, 1}, 0, 6, {5, 2, 5, 3, true, 3}, true, true};
-        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {3, 2}, {8, 2}, 3.0f, 0, {}, false};
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {12, 4}, {8, 1, true}, 0, 6, {5, 2, 5, 3, true, 3}, true};
+        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {3, 2}, {8, 2, false}, 3.0f, 0, {}, false};
     }
 }
 
@@ -74,31 +73,14 @@ struct Candidate {
     int block, plan, pattern;
     float error = 0;
     unsigned offsets = 0;  // a bit for each partition that has a base and an offset
+    unsigned turns = 0;    // a bit for each partition whose line is turned
     int place = 0;  // among the others: std::sort() keeps no order
 };
-
-// Plans that give each texel one weight of two or three levels. Guesses expect texels between the levels, and so never
-// choose these plans for blocks whose texels are all close to two or three points of a line. There are at most kCoarse.
-constexpr int kCoarse = 2;
-struct CoarsePlans {
-    int count = 0;
-    std::array<int, kCoarse> plan{};
-};
-CoarsePlans coarse_plans(const AstcPlans& plans) {
-    CoarsePlans coarse;
-    for (std::size_t k = 0; k < plans.plans.size(); ++k) {
-        const AstcPlan& plan = plans.plans[k];
-        const bool is_plain = plan.partitions == 1 && plan.mode.planes == 1 && plan.grid->is_full;
-        if (!is_plain || kAstcRangeTable[plan.mode.range].levels > 3) continue;
-        coarse.plan[static_cast<std::size_t>(coarse.count++)] = static_cast<int>(k);
-    }
-    return coarse;
-}
 
 // The most candidates that a block has.
 int most_candidates(const Spending& spending) {
     const int parts = spending.patterns[0] * spending.part_plans[0] + spending.patterns[1] * spending.part_plans[1];
-    return (spending.guesses + (spending.coarse ? kCoarse : 0) + parts) * (spending.both_ends ? 2 : 1);
+    return (spending.guesses + parts) * (spending.both_ends ? 2 : 1);
 }
 
 struct Found {
@@ -119,7 +101,6 @@ public:
         range_.reserve(place(most));
         some_.reserve(place(most));
         candidates_.reserve(place(most * most_candidates(spending)));
-        if (spending.coarse) coarse_ = coarse_plans(plans_);
     }
 
     // The first texel of a channel of a block; the others follow at distances of lanes().
@@ -137,8 +118,8 @@ private:
         return guide_.patterns[plans_.plans[place(candidate.plan)].partitions - 2][place(candidate.pattern)];
     }
     AstcGroup group(int first);
-    void add(int block, int number, int pattern, unsigned narrow);
-    void add_guesses(int block, int lane, float most, const unsigned* narrow);
+    void add(int block, int number, int pattern, unsigned bits);
+    void add_guesses(int block, int lane, float most, const unsigned* bits);
     void guess();
     void guess_parts(int partitions, float worth);
     void fit(const AstcSteps& steps, std::size_t begin);
@@ -156,32 +137,32 @@ private:
     WorkingVector<float> range_;
     WorkingVector<Candidate> candidates_;
     WorkingVector<Candidate> some_;
-    CoarsePlans coarse_;
     alignas(64) float gathered_[3][kAstcMostPlanned * kAstcLanes];
-    alignas(64) float offsets_[3 * kAstcLanes];
+    alignas(64) float offsets_[3 * kAstcLanes], turns_[3 * kAstcLanes];
     AstcFits fits_;
     AstcGuesses guesses_;
 };
 
-AstcGroup Batch::group(int first) { return {{values(first, 0), values(first, 1)}, nullptr, nullptr}; }
+AstcGroup Batch::group(int first) { return {{values(first, 0), values(first, 1)}, nullptr, nullptr, nullptr}; }
 
 // Adds a candidate with the ends that its narrow partitions ask for.
-void Batch::add(int block, int number, int pattern, unsigned narrow) {
+void Batch::add(int block, int number, int pattern, unsigned bits) {
     const AstcPlan& plan = plans_.plans[place(number)];
+    const unsigned narrow = bits & 15, turns = bits >> 4;
     const bool all = narrow == (1u << plan.partitions) - 1;
     const int mixed = all ? number : plan.mixed;
     const bool has_offsets = narrow != 0 && mixed >= 0 && kAstcRangeTable[plan.color_range].levels < 256;
-    if (has_offsets) candidates_.push_back({block, mixed, pattern, 0.0f, narrow});
-    if (!has_offsets || spending_.both_ends) candidates_.push_back({block, number, pattern});
+    if (has_offsets) candidates_.push_back({block, mixed, pattern, 0.0f, narrow, turns});
+    if (!has_offsets || spending_.both_ends) candidates_.push_back({block, number, pattern, 0.0f, 0, turns});
 }
 
 // The guesses of a lane, up to an error, become candidates of a block.
-void Batch::add_guesses(int block, int lane, float most, const unsigned* narrow) {
+void Batch::add_guesses(int block, int lane, float most, const unsigned* bits) {
     for (int q = 0; q < guesses_.count; ++q) {
         const std::size_t k = place(q * lanes_ + lane);
         if (guesses_.error[k] >= most) continue;
         add(block, static_cast<int>(guesses_.plan[k]), static_cast<int>(guesses_.pattern[k]),
-            narrow != nullptr ? *narrow : static_cast<unsigned>(guesses_.offsets[k]));
+            bits != nullptr ? *bits : static_cast<unsigned>(guesses_.bits[k]));
     }
 }
 
@@ -195,15 +176,8 @@ void Batch::guess() {
             // A little more than nothing, for guesses of 0.
             const float most = std::min(kNone, spending_.likely * (guesses_.error[l] + 1.0f));
             if (guesses_.range[l] <= 0.0f) continue;
-            const std::size_t begin = candidates_.size();
             const unsigned narrow = guesses_.widest[l] <= kAstcNarrow ? 1 : 0;
             add_guesses(first + l, l, most, &narrow);
-            for (int k = 0; k < coarse_.count; ++k) {
-                const int plan = coarse_.plan[place(k)];
-                const auto is_plan = [plan](const Candidate& added) { return added.plan == plan; };
-                if (std::none_of(candidates_.begin() + static_cast<std::ptrdiff_t>(begin), candidates_.end(), is_plan))
-                    add(first + l, plan, 0, narrow);
-            }
         }
     }
 }
@@ -218,7 +192,7 @@ void Batch::guess_parts(int partitions, float worth) {
     for (std::size_t at = 0; at < some_.size(); at += place(lanes_)) {
         const int used = std::min(lanes_, static_cast<int>(some_.size() - at));
         gather(&some_[at], used);
-        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr, nullptr}, partitions,
+        guess_astc_patterns(guide_, {{gathered_[0], gathered_[1]}, nullptr, nullptr, nullptr}, partitions,
                             spending_.patterns[partitions - 2], spending_.part_plans[partitions - 2], guesses_);
         for (int l = 0; l < used; ++l) {
             const int block = some_[at + place(l)].block;
@@ -249,8 +223,10 @@ void Batch::fit_some(const AstcSteps& steps, Candidate* candidates, int used) {
     for (int p = 0; p < plan.partitions; ++p) {
         for (int l = 0; l < lanes_; ++l)
             offsets_[p * lanes_ + l] = static_cast<float>(candidates[std::min(l, used - 1)].offsets >> p & 1);
+        for (int l = 0; l < lanes_; ++l)
+            turns_[p * lanes_ + l] = static_cast<float>(candidates[std::min(l, used - 1)].turns >> p & 1);
     }
-    fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2], offsets_}, fits_);
+    fit_astc(plan, steps, {{gathered_[0], gathered_[1]}, gathered_[2], offsets_, turns_}, fits_);
     for (int l = 0; l < used; ++l) {
         Found& found = found_[place(candidates[l].block)];
         candidates[l].error = fits_.error[l];
