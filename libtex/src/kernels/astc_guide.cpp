@@ -66,16 +66,17 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
         const AstcGuide::Choice choice = choice_of(plans, number);
         const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
         const AstcMode& mode = plan.mode;
-        if (plan.is_mixed) continue;
+        if (plan.is_mixed || (plan.partitions > 1 && mode.planes == 2 && !reach.part_planes)) continue;
         if (mode.grid != plans.block && std::max(mode.grid.width, mode.grid.height) > reach.most_weights) continue;
         auto& grids = plan.partitions == 1 ? guide.grids : guide.of_parts[plan.partitions - 2];
         auto grid = std::find_if(grids.begin(), grids.end(),
                                  [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
         if (grid == grids.end()) {
-            grids.push_back({mode.grid, {}});
+            grids.push_back({mode.grid, {}, false});
             grid = grids.end() - 1;
         }
         grid->choices.push_back(choice);
+        grid->has_planes = grid->has_planes || mode.planes == 2;
     }
     for (auto* grids : {&guide.grids, &guide.of_parts[0], &guide.of_parts[1]}) {
         std::stable_sort(grids->begin(), grids->end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {

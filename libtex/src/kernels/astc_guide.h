@@ -26,6 +26,7 @@ struct AstcGuide {
     struct Grid {
         Extent extent;
         std::vector<Choice> choices;
+        bool has_planes = false;  // choices with two planes
     };
     const AstcPlans* plans = nullptr;
     bool measures_coarse = false;
@@ -42,6 +43,7 @@ struct AstcReach {
     int most_weights = 64;   // along an axis, of grids with one partition that are not full
     int pattern_steps = 1;   // of so many patterns, one
     bool measures_coarse = false;  // with one partition, too
+    bool part_planes = false;      // two planes of several partitions
 };
 [[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
 

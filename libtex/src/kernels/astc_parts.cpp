@@ -2,6 +2,8 @@
 
 #include "kernels/astc_parts.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/astc_parts.cpp"
 #include <hwy/foreach_target.h>
@@ -217,20 +219,25 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
     alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[3 * 64 * kAstcLanes];
     const float* const channels[2] = {shape.field[1], shape.field[2]};
     const float* const lines[3] = {shape.line[0], shape.line[1], shape.line[2]};
+    const auto& grids = guide.of_parts[partitions - 2];
+    const bool has_planes =
+        std::any_of(grids.begin(), grids.end(), [](const AstcGuide::Grid& grid) { return grid.has_planes; });
     int width = 0;
-    for (const AstcGuide::Grid& grid : guide.of_parts[partitions - 2]) {
+    for (const AstcGuide::Grid& grid : grids) {
         FloatVec two = hn::Zero(d);
         AstcTurned one = {two, two};
         if (grid.extent != block) {
             if (grid.extent.width != width) {
-                ProjectRows(guide, grid.extent.width, channels, 2, rows);
+                if (has_planes) ProjectRows(guide, grid.extent.width, channels, 2, rows);
                 ProjectRows(guide, grid.extent.width, lines, partitions, line_rows);
             }
             width = grid.extent.width;
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
-            FloatVec in[3];
-            ProjectColumns(guide, grid.extent, rows, 2, in);
-            two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
+            if (grid.has_planes) {
+                FloatVec in[3];
+                ProjectColumns(guide, grid.extent, rows, 2, in);
+                two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
+            }
         }
         one.left = hn::Add(hn::Max(one.left, hn::Zero(d)), across);
         const FloatVec bits = hn::Add(shape.narrow, hn::Mul(one.turns, AstcNumber(16.0f)));

@@ -42,10 +42,10 @@ Spending spending_of(Format format, Effort effort) {
     // Many weights make up for endpoints that are not the best to begin with.
     const int insets = format == Format::astc_4x4_unorm ? 3 : 2;
     switch (effort) {
-        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {}, {8, 1, false}, 0, 0, {}, false};
+        case Effort::fast: return {1, kNone, {0, 1, 1, 1, false, 0}, {}, {}, {8, 1, false, false}, 0, 0, {}, false};
         case Effort::best:
-            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {12, 4}, {8, 1, true}, 0, 6, {5, 2, 5, 3, true, 3}, true};
-        default: return {6, 2.0f, {insets, 1, 2, 2, true, 0}, {2, 1}, {3, 2}, {8, 2, false}, 3.0f, 0, {}, false};
+            return {32, kNone, {3, 1, 2, 2, true, 0}, {5, 4}, {12, 4}, {8, 1, true, true}, 0, 6, {5, 2, 5, 3, true, 3}, true};
+        default: return {2, 1.5f, {insets, 1, 2, 2, true, 0}, {1, 0}, {2, 0}, {8, insets == 3 ? 2 : 4, false, false}, 3.0f, 0, {}, false};
     }
 }
 
