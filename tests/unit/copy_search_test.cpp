@@ -2,6 +2,7 @@
 // The scores of what blocks may copy, against fits in double, and the shapes of halves against the decoders.
 
 #include "kernels/copy_search.h"
+#include "kernels/chords.h"
 
 #include <algorithm>
 #include <array>

@@ -42,8 +42,8 @@ AstcValues values_of(const std::uint8_t* meanings, int levels, int top, int step
     return values;
 }
 
-// `is_there` says which of `count` numbers there are. Gets the nearest one (the lower one of two), the next lower and the
-// next higher one, or the same at the ends.
+// `is_there` says which of `count` numbers there are. Gets the nearest one (the lower one of two), the next lower and
+// the next higher one, or the same at the ends.
 void fill_nearest(const bool* is_there, int count, float* nearest, float* lower, float* upper) {
     for (int k = 0; k < count; ++k) {
         int down = k, up = k, below = k - 1, above = k + 1;
@@ -145,7 +145,8 @@ void add_mixed_plans(AstcPlans& plans) {
     for (std::size_t k = 0; k < count; ++k) {
         AstcPlan plan = plans.plans[k];
         if (plan.partitions == 1) continue;
-        const int color_range = astc_range_within(4 * plan.partitions, color_bits(plan.partitions, plan.mode) - mixed_bits(plan.partitions));
+        const int color_range = astc_range_within(4 * plan.partitions,
+                                                  color_bits(plan.partitions, plan.mode) - mixed_bits(plan.partitions));
         if (color_range < kAstcLeastColorRange) continue;
         plans.plans[k].mixed = static_cast<int>(plans.plans.size());
         plan.is_mixed = true;
@@ -253,7 +254,8 @@ void put_header(const AstcPlan& plan, const AstcContent& content, AstcBits& bits
     if (!plan.is_mixed) return bits.put(25, 4, static_cast<unsigned>(mode_of(0)));
     // Two bits say that all modes are at least 4, a bit for each says that it is below 8, and two are the rest of it.
     unsigned modes = 2;
-    for (int p = 0; p < plan.partitions; ++p) modes |= static_cast<unsigned>(mode_of(p) - 4) << (2 + plan.partitions + 2 * p);
+    for (int p = 0; p < plan.partitions; ++p)
+        modes |= static_cast<unsigned>(mode_of(p) - 4) << (2 + plan.partitions + 2 * p);
     const int more = mixed_bits(plan.partitions);
     bits.put(23, 6, modes & 0x3f);
     bits.put(128 - plan.mode.weight_bits() - more, more, modes >> 6);
@@ -287,11 +289,6 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
     bits.low |= reversed.low;
     bits.high |= reversed.high;
     write_astc_bits(bits, block);
-}
-
-void write_astc_void(int x, int y, std::byte* block) {
-    const auto low = static_cast<std::uint64_t>(x), high = static_cast<std::uint64_t>(y);
-    write_astc_bits({~std::uint64_t{0x203}, low | low << 16 | low << 32 | high << 48}, block);
 }
 
 }  // namespace tex::inline v1

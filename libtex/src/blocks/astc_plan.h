@@ -52,7 +52,7 @@ struct AstcOffsets {
     float nearest[256], lower[256], upper[256];  // bases, as endpoints in AstcValues
     // Of offsets, at 32 + offset, and 64 places farther for bases from 128.
     float nearest_offset[128], lower_offset[128], upper_offset[128];
-    std::uint8_t stored_base[128];         // by the lower 7 bits of the base
+    std::uint8_t stored_base[128];       // by the lower 7 bits of the base
     std::int16_t stored_offset[2 * 64];  // by the place of the offset, or -1
 
     static int place(int base, int offset) { return 32 + offset + (base >= 128 ? 64 : 0); }
@@ -82,7 +82,7 @@ struct AstcPattern {
 struct AstcPlans {
     Extent block;
     std::vector<std::unique_ptr<AstcGrid>> grids;
-    std::vector<AstcPlan> plans;  // mixed ones last
+    std::vector<AstcPlan> plans;           // mixed ones last
     std::vector<AstcPattern> patterns[2];  // of two partitions; of three
 };
 
@@ -98,8 +98,5 @@ struct AstcContent {
 };
 
 void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* block);
-
-// A block of one colour: codes of 16 bits.
-void write_astc_void(int x, int y, std::byte* block);
 
 }  // namespace tex::inline v1

@@ -75,12 +75,15 @@ void AstcPlanes(const float* xy, std::size_t count, float scale, float* x, float
     }
 }
 
-void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
+// With kOne, the best plan alone is kept.
+template <bool kOne>
+void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
     const FloatTag d;
     AstcShape shape;
     const Extent block = guide.plans->block;
     MeasureShape(group, block.width * block.height, shape);
     ClearGuesses(guesses);
+    FloatVec least = AstcNumber(1e30f), best = hn::Zero(d);
     hn::Store(shape.ranges, d, guesses.range);
     const FloatVec widest =
         hn::Max(hn::Sub(shape.greatest[0], shape.least[0]), hn::Sub(shape.greatest[1], shape.least[1]));
@@ -115,9 +118,23 @@ void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gues
                 noise = hn::Mul(noise, coarse[choice.coarse]);
             noise = hn::Add(noise, ends);
             if (choice.levels > 0) noise = hn::Min(noise, LevelsLeave(shape, choice.levels, block));
-            AddGuess(hn::Add(choice.planes == 2 ? two : one, noise), choice.plan, hn::Zero(d), guesses);
+            const FloatVec error = hn::Add(choice.planes == 2 ? two : one, noise);
+            if (kOne) {
+                best = hn::IfThenElse(hn::Lt(error, least), AstcNumber(static_cast<float>(choice.plan)), best);
+                least = hn::Min(error, least);
+            } else {
+                AddGuess(error, choice.plan, hn::Zero(d), guesses);
+            }
         }
     }
+    if (!kOne) return;
+    hn::Store(least, d, guesses.error);
+    hn::Store(best, d, guesses.plan);
+}
+
+void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
+    if (guesses.count == 1) return GuessPlans<true>(guide, group, guesses);
+    GuessPlans<false>(guide, group, guesses);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,9 +16,6 @@ namespace tex::inline v1 {
 
 inline constexpr int kAstcMostGuesses = 64;
 
-// Texels whose channels have ranges up to this one are narrow: their endpoints are better stored as bases and offsets.
-inline constexpr float kAstcNarrow = 31.0f;
-
 // Guesses of each block: errors, numbers of plans, and numbers of patterns in the guide.
 struct AstcGuesses {
     int count = 0;  // at most kAstcMostGuesses; set by the caller

@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <utility>
+#include <limits>
 
 #include "blocks/astc_ise.h"
 
@@ -28,9 +27,38 @@ AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
     }
     const float step = 255.0f / static_cast<float>(kAstcRangeTable[plan.color_range].levels - 1);
     const auto ends = [&](float s) { return 2.0f * texels * kMeasuredEnds * s * s / 12.0f; };
-    return {number, plan.mode.planes, kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps), ends(step),
-            ends(std::max(1.0f, 0.5f * step)), plan.mode.range < kAstcCoarseLevels ? plan.mode.range : -1,
+    return {number,
+            plan.mode.planes,
+            kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps),
+            ends(step),
+            ends(std::max(1.0f, 0.5f * step)),
+            plan.mode.range < kAstcCoarseLevels ? plan.mode.range : -1,
             plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
+}
+
+// Of choices of one grid, the guesses differ by noise alone. Leaves out those that are the best for no range.
+void keep_best(std::vector<AstcGuide::Choice>& choices) {
+    constexpr float kMostRange = 255.0f * 255.0f, kNarrowRange = kAstcNarrow * kAstcNarrow, kStep = 1.05f;
+    std::vector<bool> is_best(choices.size());
+    for (const bool is_narrow : {false, true}) {
+        for (int planes = 1; planes <= 2; ++planes) {
+            const auto most = static_cast<float>(planes) * (is_narrow ? kNarrowRange : kMostRange);
+            for (float range = 0.1f; range < most; range *= kStep) {
+                const auto noise = [&](const AstcGuide::Choice& choice) {
+                    if (choice.planes != planes) return std::numeric_limits<float>::max();
+                    return choice.weights * range + (is_narrow ? choice.offsets : choice.ends);
+                };
+                const auto best = std::min_element(choices.begin(), choices.end(),
+                                                   [&](const auto& a, const auto& b) { return noise(a) < noise(b); });
+                if (best != choices.end()) is_best[static_cast<std::size_t>(best - choices.begin())] = true;
+            }
+        }
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        if (is_best[k] || choices[k].levels > 0) choices[kept++] = choices[k];
+    }
+    choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(kept), choices.end());
 }
 
 // Gram and Schmidt's method in double precision.
@@ -67,7 +95,6 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
         const AstcPlan& plan = plans.plans[static_cast<std::size_t>(number)];
         const AstcMode& mode = plan.mode;
         if (plan.is_mixed || (plan.partitions > 1 && mode.planes == 2 && !reach.part_planes)) continue;
-        if (mode.grid != plans.block && std::max(mode.grid.width, mode.grid.height) > reach.most_weights) continue;
         auto& grids = plan.partitions == 1 ? guide.grids : guide.of_parts[plan.partitions - 2];
         auto grid = std::find_if(grids.begin(), grids.end(),
                                  [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
@@ -77,6 +104,9 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
         }
         grid->choices.push_back(choice);
         grid->has_planes = grid->has_planes || mode.planes == 2;
+    }
+    if (reach.best_alone) {
+        for (AstcGuide::Grid& grid : guide.grids) keep_best(grid.choices);
     }
     for (auto* grids : {&guide.grids, &guide.of_parts[0], &guide.of_parts[1]}) {
         std::stable_sort(grids->begin(), grids->end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {

@@ -9,6 +9,9 @@
 
 namespace tex::inline v1 {
 
+// Texels whose channels have ranges up to this one are narrow: their endpoints are better stored as bases and offsets.
+inline constexpr float kAstcNarrow = 31.0f;
+
 // The noise of weights of 2 to 5 levels is measured.
 inline constexpr int kAstcCoarseLevels = 4;
 
@@ -40,10 +43,10 @@ struct AstcGuide {
 
 // How much of it an effort uses.
 struct AstcReach {
-    int most_weights = 64;   // along an axis, of grids with one partition that are not full
-    int pattern_steps = 1;   // of so many patterns, one
+    int pattern_steps = 1;         // of so many patterns, one
     bool measures_coarse = false;  // with one partition, too
     bool part_planes = false;      // two planes of several partitions
+    bool best_alone = false;       // leaves out plans that are never the best guess of their grid
 };
 [[nodiscard]] AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach);
 

@@ -8,7 +8,7 @@
 
 #include "blocks/half_block.h"
 #include "kernels/angle_search.h"
-#include "kernels/copy_search.h"
+#include "kernels/chords.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "blocks/half_block.h"
+#include "kernels/chords.h"
 #include "kernels/copy_search.h"
 #include "rows/rdo_candidates.h"
 #include "rows/rdo_rate.h"
