@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blocks/extent.h"
+#include "kernels/encode_astc.h"
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/usable.h"
@@ -61,7 +62,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
         Level level{plane.extent(), std::vector<std::byte>(level_bytes(format, plane.extent()))};
         const bool last = &plane == &chain.levels.back();
         const double next = last ? 1.0 : done + (1.0 - done) * 0.75;
-        const int grain = whole_blocks(rows_per_piece(plane.extent()));
+        const int grain = whole_blocks(rows_per_piece(plane.extent()), format_info(format).block.height);
         const auto packed = parallel_for(execution, plane.extent().height, grain,
                                          [&](int begin, int end) {
                                              pack_roughness_rows(plane, plane.extent().height, format, effort, begin,
@@ -92,7 +93,8 @@ Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effor
                                    Format::r16_unorm, Format::r16_float,     Format::r32_float};
     return guarded(execution, [&]() -> Result<Texture> {
         if (chain.levels.empty()) return bad_option("the chain has no level");
-        if (std::find(std::begin(kFormats), std::end(kFormats), format) == std::end(kFormats)) {
+        const bool is_single = std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
+        if (!is_single && !encodes_astc(format)) {
             return Error{
                 ErrorCode::bad_option,
                 {},

@@ -107,6 +107,13 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
                          "--roughness-format", "eac-r11"});
     EXPECT_EQ(texture("e.ktx2").format, Format::eac_r11_unorm);
     EXPECT_NEAR(mean("e.ktx2", 0), 0.25, 0.5 / 2047);
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--mips", "none", "--roughness-in", "0.25",
+                         "--roughness-out", "a.astc"});
+    EXPECT_EQ(texture("a.astc").format, Format::astc_4x4_unorm);
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-in", "0.25", "--roughness-out",
+                         "a.ktx2", "--roughness-format", "astc-6x5"});
+    EXPECT_EQ(texture("a.ktx2").format, Format::astc_6x5_unorm);
+    EXPECT_NEAR(mean("a.ktx2", 0), 0.25, 1.0 / 2048);
     for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm},
                                        {"r16", Format::r16_unorm},
                                        {"half", Format::r16_float},

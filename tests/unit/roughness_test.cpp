@@ -275,11 +275,10 @@ TEST(Roughness, PacksIntoEveryFormatOfOneChannel) {
     RoughnessChain chain;
     chain.levels.push_back(noise_roughness({13, 6}));
     chain.levels.push_back(noise_roughness({6, 3}));
-    const std::pair<Format, double> bounds[] = {{Format::r8_unorm, 0.5 / 255 + 1e-7},
-                                                {Format::r16_unorm, 0.5 / 65535 + 1e-7},
-                                                {Format::r16_float, 1.0 / 4096},
-                                                {Format::r32_float, 0.0},
-                                                {Format::bc4_unorm, 1.0 / 10}};  // noise from 0 to 1: steps of sevenths
+    const std::pair<Format, double> bounds[] = {
+        {Format::r8_unorm, 0.5 / 255 + 1e-7}, {Format::r16_unorm, 0.5 / 65535 + 1e-7},
+        {Format::r16_float, 1.0 / 4096},      {Format::r32_float, 0.0},
+        {Format::astc_4x4_unorm, 1.0 / 40},   {Format::bc4_unorm, 1.0 / 10}};  // noise from 0 to 1: steps of sevenths
     for (const auto& [format, bound] : bounds) {
         const auto texture = tex::pack_roughness(chain, format);
         ASSERT_TRUE(texture);
@@ -297,6 +296,46 @@ TEST(Roughness, PacksIntoEveryFormatOfOneChannel) {
         }
     }
     EXPECT_EQ(tex::pack_roughness(chain, Format::rg8_unorm).error().code, tex::ErrorCode::bad_option);
+}
+
+// Luminance alone leaves more bits for weights than luminance and alpha, and threads divide levels between blocks.
+TEST(Roughness, AstcIsLuminanceAndBetterThanTwoChannels) {
+    RoughnessChain chain;
+    Plane<float>& level = chain.levels.emplace_back(Extent{301, 203});
+    for (int j = 0; j < 203; ++j) {
+        for (int i = 0; i < 301; ++i)
+            level.at(i, j) =
+                static_cast<float>(0.5 + 0.3 * std::sin(0.21 * i) * std::cos(0.17 * j) + 0.03 * std::sin(2.1 * i * j));
+    }
+    tex::MipChain normals;
+    NormalMap& map = normals.levels.emplace_back(Extent{301, 203});
+    for (int j = 0; j < 203; ++j) {
+        for (int i = 0; i < 301; ++i) {
+            map.x.at(i, j) = 2.0f * level.at(i, j) - 1.0f;
+            map.z.at(i, j) = 1.0f;
+        }
+    }
+    for (const auto& [format, encoding] : {std::pair{Format::astc_5x5_unorm, tex::Encoding::astc_5x5},
+                                           {Format::astc_8x6_unorm, tex::Encoding::astc_8x6}}) {
+        const auto texture = tex::pack_roughness(chain, format, tex::Effort::normal, {1, {}});
+        const auto both = tex::pack(normals, {.encoding = encoding});
+        ASSERT_TRUE(texture && both);
+        EXPECT_EQ(texture->levels[0].bytes,
+                  tex::pack_roughness(chain, format, tex::Effort::normal, {4, {}})->levels[0].bytes);
+        const auto image = tex::decode(*texture, 0), image_of_both = tex::decode(*both, 0);
+        ASSERT_TRUE(image && image_of_both);
+        double error = 0, error_of_both = 0;
+        for (int j = 0; j < 203; ++j) {
+            for (int i = 0; i < 301; ++i) {
+                const float v = image->planes[0].at(i, j);
+                EXPECT_EQ(image->planes[2].at(i, j), v);
+                EXPECT_EQ(image->planes[3].at(i, j), 1.0f);
+                error += std::pow(v - level.at(i, j), 2);
+                error_of_both += std::pow(image_of_both->planes[0].at(i, j) - level.at(i, j), 2);
+            }
+        }
+        EXPECT_LT(error, error_of_both);
+    }
 }
 
 TEST(Roughness, LargeLevelsAreLeftOut) {

@@ -40,7 +40,7 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
     input.completes = Completes::files;
     command.choice(model_, "--roughness-model", "M", kRoughnessModelNames, "how lost variance becomes roughness");
     command.choice(format_, "--roughness-format", "F", kRoughnessFormatNames, "how roughness is stored").preset =
-        "bc4 in dds, ktx2; r16 in tiff; half in exr; else r8";
+        "bc4 in dds, ktx2; astc-4x4 in astc; r16 in tiff; half in exr; else r8";
     command.check([this, &command] {
         const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
         if (command.given("--roughness-out") && output_.empty())
@@ -82,7 +82,9 @@ std::string RoughnessOptions::output_of(const Task& task) const {
 
 Format RoughnessOptions::format_in(Container container) const {
     if (format_) return *format_;
-    const FormatInfo info = format_info(encoding_info(default_encoding(container)).format);
+    const Format normals = encoding_info(default_encoding(container)).format;
+    if (container == Container::astc) return normals;
+    const FormatInfo info = format_info(normals);
     return info.has_blocks() ? Format::bc4_unorm : *format_of(info.sample, info.bits, 1);
 }
 

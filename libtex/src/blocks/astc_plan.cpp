@@ -126,8 +126,9 @@ void add_plans(int partitions, AstcPlans& plans) {
     for (unsigned bits = 0; bits < 1u << kAstcModeBits; ++bits) {
         if ((bits & 0x1ff) == kAstcVoid) continue;
         const std::optional<AstcMode> mode = astc_mode(bits, plans.block);
-        if (!mode || !seen.insert({mode->grid.width, mode->grid.height, mode->planes, mode->range}).second) continue;
-        const int color_range = astc_range_within(4 * partitions, color_bits(partitions, *mode));
+        if (!mode || mode->planes > plans.channels) continue;
+        if (!seen.insert({mode->grid.width, mode->grid.height, mode->planes, mode->range}).second) continue;
+        const int color_range = astc_range_within(2 * plans.channels * partitions, color_bits(partitions, *mode));
         if (color_range < kAstcLeastColorRange) continue;
         auto grid = std::find_if(plans.grids.begin(), plans.grids.end(),
                                  [&](const auto& made) { return made->extent == mode->grid; });
@@ -135,8 +136,9 @@ void add_plans(int partitions, AstcPlans& plans) {
             plans.grids.push_back(make_grid(plans.block, mode->grid));
             grid = plans.grids.end() - 1;
         }
-        plans.plans.push_back({*mode, bits, partitions, color_range, grid->get(), &astc_weight_values(mode->range),
-                               &astc_color_values(color_range), &astc_color_offsets(color_range)});
+        plans.plans.push_back({*mode, bits, partitions, plans.channels, color_range, grid->get(),
+                               &astc_weight_values(mode->range), &astc_color_values(color_range),
+                               &astc_color_offsets(color_range)});
     }
 }
 
@@ -176,11 +178,12 @@ void add_patterns(int partitions, AstcPlans& plans) {
     }
 }
 
-AstcPlans make_plans(Extent block) {
+AstcPlans make_plans(Extent block, int channels) {
     AstcPlans plans;
     plans.block = block;
+    plans.channels = channels;
     for (int partitions = 1; partitions <= 3; ++partitions) add_plans(partitions, plans);
-    add_mixed_plans(plans);
+    if (channels == 2) add_mixed_plans(plans);
     for (int partitions = 2; partitions <= 3; ++partitions) add_patterns(partitions, plans);
     return plans;
 }
@@ -217,11 +220,11 @@ const AstcOffsets& astc_color_offsets(int range) {
     return kOffsets[static_cast<std::size_t>(range)];
 }
 
-const AstcPlans& astc_plans(Extent block) {
-    static std::array<std::once_flag, 81> once;
-    static std::array<std::unique_ptr<const AstcPlans>, 81> made;
-    const auto place = static_cast<std::size_t>(block.width * 9 + block.height);
-    std::call_once(once[place], [&] { made[place] = std::make_unique<const AstcPlans>(make_plans(block)); });
+const AstcPlans& astc_plans(Extent block, int channels) {
+    static std::array<std::once_flag, 2 * 81> once;
+    static std::array<std::unique_ptr<const AstcPlans>, 2 * 81> made;
+    const auto place = static_cast<std::size_t>(81 * (channels - 1) + block.width * 9 + block.height);
+    std::call_once(once[place], [&] { made[place] = std::make_unique<const AstcPlans>(make_plans(block, channels)); });
     return *made[place];
 }
 
@@ -245,6 +248,7 @@ void store_ends(const AstcPlan& plan, const std::uint8_t ends[2], bool is_offset
 
 void put_header(const AstcPlan& plan, const AstcContent& content, AstcBits& bits) {
     const auto mode_of = [&](int p) {
+        if (plan.channels == 1) return kAstcLuminance;
         return (content.offsets >> p & 1) != 0 ? kAstcLuminanceAlphaOffset : kAstcLuminanceAlpha;
     };
     bits.put(0, kAstcModeBits, plan.mode_bits);
@@ -268,10 +272,12 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
     put_header(plan, content, bits);
     std::uint8_t values[12] = {};
     for (int p = 0; p < plan.partitions; ++p) {
-        for (int c = 0; c < 2; ++c)
-            store_ends(plan, content.ends[p][c], (content.offsets >> p & 1) != 0, values + 4 * p + 2 * c);
+        for (int c = 0; c < plan.channels; ++c) {
+            store_ends(plan, content.ends[p][c], (content.offsets >> p & 1) != 0, values + 2 * (plan.channels * p + c));
+        }
     }
-    write_astc_ise(bits, header_bits(plan.partitions), plan.color_range, 4 * plan.partitions, values);
+    const int count = 2 * plan.channels * plan.partitions;
+    write_astc_ise(bits, header_bits(plan.partitions), plan.color_range, count, values);
 
     std::uint8_t stored[kAstcMostWeights];
     const int planes = plan.mode.planes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // astc_plan.h: what an encoder needs to know about the ways of storing blocks of two channels, x and y, as luminance
-// and alpha: grids of weights and what texels make of them, the values that weights and endpoints can have; and
-// writing.
+// and alpha, or of one channel as luminance: grids of weights and what texels make of them, the values that weights and
+// endpoints can have; and writing.
 
 #pragma once
 
@@ -63,13 +63,14 @@ struct AstcPlan {
     AstcMode mode;
     unsigned mode_bits = 0;
     int partitions = 1;
+    int channels = 2;
     int color_range = 0;
     const AstcGrid* grid = nullptr;
     const AstcValues* weights = nullptr;
     const AstcValues* colors = nullptr;
-    const AstcOffsets* offsets = nullptr;
-    bool is_mixed = false;  // some partitions may have bases and offsets and others not
-    int mixed = -1;         // the plan that differs in this alone, if there is one
+    const AstcOffsets* offsets = nullptr;  // of two channels
+    bool is_mixed = false;                 // some partitions may have bases and offsets and others not
+    int mixed = -1;                        // the plan that differs in this alone, if there is one
 };
 
 // A way to divide the texels of a block into two or three partitions, none of them empty.
@@ -81,13 +82,14 @@ struct AstcPattern {
 // All ways to store blocks of a size. No two patterns divide the texels alike.
 struct AstcPlans {
     Extent block;
+    int channels = 2;
     std::vector<std::unique_ptr<AstcGrid>> grids;
     std::vector<AstcPlan> plans;           // mixed ones last
     std::vector<AstcPattern> patterns[2];  // of two partitions; of three
 };
 
-// Made at the first call for a size. Throws std::bad_alloc.
-[[nodiscard]] const AstcPlans& astc_plans(Extent block);
+// Made at the first call for a size and one or two channels. Throws std::bad_alloc.
+[[nodiscard]] const AstcPlans& astc_plans(Extent block, int channels = 2);
 
 // What a block of a plan holds.
 struct AstcContent {

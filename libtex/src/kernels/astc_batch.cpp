@@ -37,7 +37,8 @@ void AstcBatch::add(int block, int number, int pattern, unsigned bits) {
     const unsigned narrow = bits & 15, turns = bits >> 4;
     const bool all = narrow == (1u << plan.partitions) - 1;
     const int mixed = all ? number : plan.mixed;
-    const bool has_offsets = narrow != 0 && mixed >= 0 && kAstcRangeTable[plan.color_range].levels < 256;
+    const bool has_offsets =
+        plan.channels == 2 && narrow != 0 && mixed >= 0 && kAstcRangeTable[plan.color_range].levels < 256;
     if (has_offsets) candidates_.push_back({block, mixed, pattern, 0.0f, narrow, turns});
     if (!has_offsets || effort_.both_ends) candidates_.push_back({block, number, pattern, 0.0f, 0, turns});
 }
@@ -125,9 +126,9 @@ void AstcBatch::fit_some(const AstcSteps& steps, Candidate* candidates, int used
             for (int w = 0; w < plan.grid->weights; ++w)
                 found.content.weights[p][w] = static_cast<std::uint8_t>(fits_.weights[p][w * lanes_ + l]);
         }
-        for (int n = 0; n < 4 * plan.partitions; ++n) {
-            found.content.ends[n / 4][n / 2 % 2][n % 2] =
-                static_cast<std::uint8_t>(fits_.ends[n / 4][n / 2 % 2][n % 2][l]);
+        for (int p = 0; p < plan.partitions; ++p) {
+            for (int n = 0; n < 2 * plan.channels; ++n)
+                found.content.ends[p][n / 2][n % 2] = static_cast<std::uint8_t>(fits_.ends[p][n / 2][n % 2][l]);
         }
     }
 }
@@ -183,9 +184,9 @@ void AstcBatch::write(int block, std::byte* bytes) {
     // A block of one colour is better only if it hardly differs.
     constexpr float kHardly = 16.0f;
     if (range_[place(block)] < kHardly) {
-        int code[2];
+        int code[2] = {0, 0xffff};
         float error = 0;
-        for (int c = 0; c < 2; ++c) {
+        for (int c = 0; c < plans_.channels; ++c) {
             const float* const from = values(block, c);
             float sum = 0;
             for (int k = 0; k < texels_; ++k) sum += from[k * lanes_];

@@ -31,7 +31,7 @@ template <int kPartitions>
 void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
     const FloatTag d;
     const int weights = plan.grid->weights;
-    if (plan.mode.planes == 1) {
+    if (plan.mode.planes == 1 && plan.channels == 2) {
         AstcLine<2, kPartitions> both(plan, steps, group, group.value[0], group.value[1]);
         both.fit();
         StoreLine(both, weights, 0, fits);
@@ -39,7 +39,7 @@ void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gr
         return;
     }
     FloatVec error = hn::Zero(d);
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < plan.channels; ++c) {
         AstcLine<1, kPartitions> line(plan, steps, group, group.value[c], nullptr);
         line.fit();
         StoreLine(line, weights, c, fits);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc_fit.h: fits blocks of two channels to a plan of ASTC, many blocks side by side.
+// astc_fit.h: fits blocks of one or two channels to a plan of ASTC, many blocks side by side.
 //
 // Endpoints give ideal weights, which are divided among the weights of the grid by least squares and rounded one after
 // the other, so that later weights make up for the rounding of earlier ones (Gauss-Seidel, and coordinate descent).

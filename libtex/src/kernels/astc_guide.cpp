@@ -26,12 +26,14 @@ AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
         for (const float share : plan.grid->infill[k]) kept += share * share / 256.0f;
     }
     const float step = 255.0f / static_cast<float>(kAstcRangeTable[plan.color_range].levels - 1);
-    const auto ends = [&](float s) { return 2.0f * texels * kMeasuredEnds * s * s / 12.0f; };
+    const auto ends = [&](float s) {
+        return static_cast<float>(plan.channels) * texels * kMeasuredEnds * s * s / 12.0f;
+    };
     return {number,
             plan.mode.planes,
             kMeasuredNoise[plan.mode.range] * kept / (12.0f * steps * steps),
             ends(step),
-            ends(std::max(1.0f, 0.5f * step)),
+            ends(plan.channels == 2 ? std::max(1.0f, 0.5f * step) : step),
             plan.mode.range < kAstcCoarseLevels ? plan.mode.range : -1,
             plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
 }

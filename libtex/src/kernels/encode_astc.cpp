@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "blocks/astc_void.h"
 #include "blocks/extent.h"
@@ -22,36 +23,71 @@ constexpr int kBatch = 2048;
 
 std::size_t to_size(int n) { return static_cast<std::size_t>(n); }
 
-// The guides that were made, by size of blocks and effort.
-constexpr std::size_t kGuides = 3 * 8;
+// The guides that were made, by channels, size of blocks and effort.
+constexpr std::size_t kGuides = 2 * 8 * 3;
 std::array<std::atomic<const AstcGuide*>, kGuides> made_guides;
 
-std::size_t guide_number(Format format, Effort effort) {
+std::size_t guide_number(Format format, Effort effort, int channels) {
     const std::size_t size = static_cast<std::size_t>(format) - static_cast<std::size_t>(Format::astc_4x4_unorm);
-    return 3 * size + static_cast<std::size_t>(effort);
+    return 3 * (8 * to_size(channels - 1) + size) + static_cast<std::size_t>(effort);
 }
 
-const AstcGuide& guide_of(Format format, Effort effort) {
+const AstcGuide& guide_of(Format format, Effort effort, int channels) {
     static std::array<std::once_flag, kGuides> once;
     static std::array<std::unique_ptr<const AstcGuide>, kGuides> kept;
-    const std::size_t at = guide_number(format, effort);
+    const std::size_t at = guide_number(format, effort, channels);
     if (const AstcGuide* const made = made_guides[at].load(std::memory_order_acquire)) return *made;
     std::call_once(once[at], [&] {
-        const AstcPlans& plans = astc_plans(format_info(format).block);
+        const AstcPlans& plans = astc_plans(format_info(format).block, channels);
         kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, astc_effort(format, effort).reach));
         made_guides[at].store(kept[at].get(), std::memory_order_release);
     });
     return *kept[at];
 }
 
+// Encodes planes whose values are from 0 to kAstcOne. With one channel, the other plane is zeros.
+void encode_planes(Format format, Effort effort, int channels, const float* const planes[2], Extent extent,
+                   std::byte* blocks) {
+    const Extent block = format_info(format).block;
+    const int across = blocks_across(extent.width, block.width);
+    const int all = across * blocks_across(extent.height, block.height);
+    const AstcEffort spends = astc_effort(format, effort);
+    WorkingVector<AstcBatch> batches;  // exactly one
+    batches.reserve(1);
+    batches.emplace_back(guide_of(format, effort, channels), spends, std::min(kBatch, all));
+    AstcBatch* const batch = &batches.front();
+    const int lanes = batch->lanes();
+    for (int first = 0; first < all; first += kBatch) {
+        const int count = std::min(kBatch, all - first);
+        for (int n = 0; n < count; ++n) {
+            const int left = (first + n) % across * block.width, top = (first + n) / across * block.height;
+            for (int c = 0; c < 2; ++c) {
+                float* to = batch->values(n, c);
+                const bool is_inside = left + block.width <= extent.width;
+                for (int j = top; j < top + block.height; ++j) {
+                    const float* const row = planes[c] + to_size(std::min(j, extent.height - 1) * extent.width);
+                    if (is_inside) {
+                        for (int i = 0; i < block.width; ++i) to[to_size(i * lanes)] = row[left + i];
+                    } else {
+                        for (int i = 0; i < block.width; ++i)
+                            to[to_size(i * lanes)] = row[std::min(left + i, extent.width - 1)];
+                    }
+                    to += block.width * lanes;
+                }
+            }
+        }
+        batch->encode(count, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(first));
+    }
+}
+
 }  // namespace
 
 bool encodes_astc(Format format) { return format >= Format::astc_4x4_unorm && format <= Format::astc_8x8_unorm; }
 
-void prepare_astc(Format format, Effort effort) { guide_of(format, effort); }
+void prepare_astc(Format format, Effort effort) { guide_of(format, effort, 2); }
 
 bool is_astc_prepared(Format format, Effort effort) {
-    return made_guides[guide_number(format, effort)].load(std::memory_order_acquire) != nullptr;
+    return made_guides[guide_number(format, effort, 2)].load(std::memory_order_acquire) != nullptr;
 }
 
 int astc_rows_at_once(Format format, int width) {
@@ -70,40 +106,21 @@ std::size_t astc_memory(Format format, Effort effort, int width, int rows) {
 }
 
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks) {
-    const Extent block = format_info(format).block;
-    const int across = blocks_across(extent.width, block.width);
-    const int all = across * blocks_across(extent.height, block.height);
-    const AstcEffort spends = astc_effort(format, effort);
     const auto texels = static_cast<std::size_t>(extent.texels());
-    WorkingVector<float> planes[2];
-    for (WorkingVector<float>& plane : planes) plane.resize(texels);
-    astc_planes(xy, texels, 0.5f * kAstcOne, planes[0].data(), planes[1].data());
-    WorkingVector<AstcBatch> batches;  // exactly one
-    batches.reserve(1);
-    batches.emplace_back(guide_of(format, effort), spends, std::min(kBatch, all));
-    AstcBatch* const batch = &batches.front();
-    const int lanes = batch->lanes();
-    for (int first = 0; first < all; first += kBatch) {
-        const int count = std::min(kBatch, all - first);
-        for (int n = 0; n < count; ++n) {
-            const int left = (first + n) % across * block.width, top = (first + n) / across * block.height;
-            for (int c = 0; c < 2; ++c) {
-                float* to = batch->values(n, c);
-                const bool is_inside = left + block.width <= extent.width;
-                for (int j = top; j < top + block.height; ++j) {
-                    const float* const row = planes[c].data() + to_size(std::min(j, extent.height - 1) * extent.width);
-                    if (is_inside) {
-                        for (int i = 0; i < block.width; ++i) to[to_size(i * lanes)] = row[left + i];
-                    } else {
-                        for (int i = 0; i < block.width; ++i)
-                            to[to_size(i * lanes)] = row[std::min(left + i, extent.width - 1)];
-                    }
-                    to += block.width * lanes;
-                }
-            }
-        }
-        batch->encode(count, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(first));
-    }
+    WorkingVector<float> values[2];
+    for (WorkingVector<float>& plane : values) plane.resize(texels);
+    astc_planes(xy, texels, 0.5f * kAstcOne, values[0].data(), values[1].data());
+    const float* const planes[2] = {values[0].data(), values[1].data()};
+    encode_planes(format, effort, 2, planes, extent, blocks);
+}
+
+void encode_astc_luminance(Format format, Effort effort, const float* luminance, Extent extent, std::byte* blocks) {
+    const auto texels = static_cast<std::size_t>(extent.texels());
+    std::vector<float> values(texels), zeros(texels);
+    std::transform(luminance, luminance + texels, values.begin(),
+                   [](float v) { return std::clamp(v, 0.0f, 1.0f) * kAstcOne; });
+    const float* const planes[2] = {values.data(), zeros.data()};
+    encode_planes(format, effort, 1, planes, extent, blocks);
 }
 
 }  // namespace tex::inline v1

@@ -11,6 +11,7 @@
 #include <half.h>
 
 #include "kernels/encode.h"
+#include "kernels/encode_astc.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -55,6 +56,16 @@ void pack_blocks(const Plane<float>& level, int height, Effort effort, int begin
     }
 }
 
+void pack_astc_blocks(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
+                      std::byte* out) {
+    const Extent extent{level.extent().width, std::min(end, height) - begin};
+    const auto width = static_cast<std::size_t>(extent.width);
+    std::vector<float> values(width * static_cast<std::size_t>(extent.height));
+    for (int j = 0; j < extent.height; ++j)
+        std::copy_n(level.row(begin + j), width, values.data() + width * static_cast<std::size_t>(j));
+    encode_astc_luminance(format, effort, values.data(), extent, out + level_bytes(format, {extent.width, begin}));
+}
+
 template <class Code>
 void pack_codes(const Plane<float>& level, int begin, int end, std::byte* out) {
     constexpr auto kTop = static_cast<float>(std::numeric_limits<Code>::max());
@@ -81,6 +92,7 @@ void pack_values(const Plane<float>& level, int begin, int end, std::byte* out) 
 
 void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
                          std::byte* out) {
+    if (encodes_astc(format)) return pack_astc_blocks(level, height, format, effort, begin, end, out);
     switch (format) {
         case Format::bc4_unorm: pack_blocks(level, height, effort, begin, end, encode_bc5_unorm, out); break;
         case Format::eac_r11_unorm: pack_blocks(level, height, effort, begin, end, encode_eac_unorm, out); break;
