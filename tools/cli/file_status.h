@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 
 namespace tex::cli {
 
@@ -50,6 +51,9 @@ enum class Links { followed, refused };
 
 // Sets the time of the last change of contents, in nanoseconds.
 bool set_mtime(const std::string& path, std::int64_t mtime);
+
+// Creates a folder and those above it, if they are missing.
+[[nodiscard]] std::error_code create_folders(const std::string& folder);
 
 // Removes a file or a link. False if that fails.
 bool remove_file(const std::string& path);

@@ -3,6 +3,7 @@
 #include "cli/file_status.h"
 
 #include <cerrno>
+#include <filesystem>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -84,6 +85,12 @@ std::FILE* standard_input() { return stdin; }
 bool set_mtime(const std::string& path, std::int64_t mtime) {
     const timespec times[] = {{0, UTIME_OMIT}, {mtime / kSecond, mtime % kSecond}};
     return utimensat(AT_FDCWD, path.c_str(), times, 0) == 0;
+}
+
+std::error_code create_folders(const std::string& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    return error;
 }
 
 bool remove_file(const std::string& path) { return std::remove(path.c_str()) == 0; }

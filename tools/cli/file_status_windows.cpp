@@ -2,6 +2,7 @@
 
 #include "cli/file_status.h"
 
+#include <algorithm>
 #include <cerrno>
 
 #include <fcntl.h>
@@ -108,6 +109,24 @@ bool set_mtime(const std::string& path, std::int64_t mtime) {
     const bool done = SetFileTime(handle, nullptr, nullptr, &time) != 0;
     CloseHandle(handle);
     return done;
+}
+
+std::error_code create_folders(const std::string& folder) {
+    const std::wstring full = system_path(folder);
+    if (full.empty()) return {errno, std::generic_category()};
+    // From the first folder that is there.
+    std::size_t end = full.size();
+    const auto exists = [&] { return GetFileAttributesW(full.substr(0, end).c_str()) != INVALID_FILE_ATTRIBUTES; };
+    while (end != 0 && end != std::wstring::npos && !exists()) end = full.rfind(L'\\', end - 1);
+    if (end == 0 || end == std::wstring::npos) return {ENOENT, std::generic_category()};
+    while (end < full.size()) {
+        end = std::min(full.find(L'\\', end + 1), full.size());
+        if (CreateDirectoryW(full.substr(0, end).c_str(), nullptr) == 0 && GetLastError() != ERROR_ALREADY_EXISTS)
+            return {set_errno(), std::generic_category()};
+    }
+    const auto made = status_of(folder);
+    return made && made->kind == FileKind::folder ? std::error_code()
+                                                  : std::error_code(ENOTDIR, std::generic_category());
 }
 
 bool remove_file(const std::string& path) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/file_status.h"
 #include "files/path_names.h"
 #include "files/system_error.h"
 
@@ -27,14 +28,14 @@ fs::path absolute_path(const std::string& path) {
 }  // namespace
 
 bool is_folder(const std::string& path) {
-    std::error_code error;
-    return path.ends_with('/') || fs::is_directory(path, error);
+    if (path.ends_with('/')) return true;
+    const auto status = status_of(path);
+    return status && status->kind == FileKind::folder;
 }
 
 Result<void> create_folders_of(const std::string& file) {
     const fs::path folder = fs::path(file).parent_path();
-    std::error_code error;
-    if (!folder.empty()) fs::create_directories(folder, error);
+    const std::error_code error = folder.empty() ? std::error_code() : create_folders(slashed(folder));
     return error ? Result<void>(no_folder_error(slashed(folder), error)) : Result<void>();
 }
 

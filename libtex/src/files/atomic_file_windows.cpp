@@ -18,7 +18,6 @@
 #include <tex/file.h>
 
 #include "files/descriptor.h"
-#include "files/path_names.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
 #include "files/unfinished_files.h"
@@ -79,8 +78,6 @@ bool may_write(const std::wstring& full) {
 Result<Target> find_target(const std::string& path, const AtomicFileOptions& options) {
     Target target;
     target.path = path;
-    if (const char* const refusal = refusal_of_name(std::string_view(path).substr(name_begin(path))))
-        return Error{ErrorCode::io, path, refusal};
     target.full = system_path(path);
     if (target.full.empty()) return system_error(path, errno);
     if (target.full.starts_with(L"\\\\.\\")) return Error{ErrorCode::io, path, "is the name of a device of Windows"};
@@ -227,6 +224,8 @@ AtomicFile::~AtomicFile() = default;
 Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
     return guarded([&]() -> Result<AtomicFile> {
         if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
+        if (const char* const refusal = refusal_of_name(path); refusal != nullptr && !named_descriptor(path))
+            return Error{ErrorCode::io, path, refusal};
         auto state = std::make_unique<State>();
         state->options = options;
         if (options.follow_links || named_descriptor(path)) {

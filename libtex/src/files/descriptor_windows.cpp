@@ -63,17 +63,18 @@ std::optional<FileStatus> status_of_handle(HANDLE handle) {
     const DWORD type = GetFileType(handle);
     if (type == FILE_TYPE_CHAR) status.kind = FileKind::device;
     if (type != FILE_TYPE_DISK) return status;
-    BY_HANDLE_FILE_INFORMATION file{};
-    if (GetFileInformationByHandle(handle, &file) == 0) {
+    FILE_STANDARD_INFO file{};
+    FILE_BASIC_INFO times{};
+    if (GetFileInformationByHandleEx(handle, FileStandardInfo, &file, sizeof file) == 0 ||
+        GetFileInformationByHandleEx(handle, FileBasicInfo, &times, sizeof times) == 0) {
         set_errno();
         return std::nullopt;
     }
-    FILE_BASIC_INFO times{};
-    GetFileInformationByHandleEx(handle, FileBasicInfo, &times, sizeof times);
-    const auto wide_number = [](DWORD high, DWORD low) { return std::uint64_t{high} << 32 | low; };
-    status.kind = (file.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0 ? FileKind::folder : FileKind::regular;
-    status.version = {file.dwVolumeSerialNumber, wide_number(file.nFileIndexHigh, file.nFileIndexLow),
-                      static_cast<std::int64_t>(wide_number(file.nFileSizeHigh, file.nFileSizeLow)),
+    BY_HANDLE_FILE_INFORMATION identity{};  // Wine has none of what was redirected to standard input
+    GetFileInformationByHandle(handle, &identity);
+    status.kind = file.Directory != FALSE ? FileKind::folder : FileKind::regular;
+    status.version = {identity.dwVolumeSerialNumber,
+                      std::uint64_t{identity.nFileIndexHigh} << 32 | identity.nFileIndexLow, file.EndOfFile.QuadPart,
                       nanoseconds_of(times.LastWriteTime.QuadPart), nanoseconds_of(times.ChangeTime.QuadPart)};
     return status;
 }

@@ -83,7 +83,9 @@ std::wstring system_path(const std::string& path) {
     return L"\\\\?\\" + full;
 }
 
-const char* refusal_of_name(std::string_view name) {
+const char* refusal_of_name(std::string_view path) {
+    if (path.size() > 1 && path[1] == ':') path.remove_prefix(2);             // a drive
+    const std::string_view name = path.substr(path.find_last_of("/\\") + 1);  // npos + 1 is 0
     if (name.empty() || name == "." || name == "..") return "names a directory, not a file";
     if (name.ends_with('.') || name.ends_with(' ')) return "ends with a dot or a blank, which Windows drops";
     for (const char c : name) {

@@ -21,7 +21,7 @@ std::wstring system_path(const std::string& path);
 // Why the last name of a path cannot be that of a new file; null if it can. Windows gives some names to devices (con,
 // nul, com1), forbids characters, takes what follows a colon for a stream, and drops dots and blanks at the end, so
 // that the file would have another name.
-const char* refusal_of_name(std::string_view name);
+const char* refusal_of_name(std::string_view path);
 
 // Sets errno to what GetLastError() says. Returns it.
 int set_errno();

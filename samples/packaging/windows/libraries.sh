@@ -59,8 +59,8 @@ with_isal_for_windows() {
 
 build_windows_libraries() {
     mkdir -p "$work/build" "$prefix/lib/pkgconfig" "$prefix/include" "$prefix/share/cmake"
-    cp -r /usr/include/nlohmann /usr/include/toml++ "$prefix/include"
-    cp -r /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
+    cp -rp /usr/include/nlohmann /usr/include/toml++ "$prefix/include"
+    cp -rp /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
     local root
     local with=(-DCMAKE_TOOLCHAIN_FILE="$toolchain" -DCMAKE_BUILD_TYPE=Release)
     with_cmake highway "${with[@]}" -DHWY_ENABLE_TESTS=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_CONTRIB=OFF
