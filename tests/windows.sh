@@ -122,7 +122,9 @@ check 'a stream of a file' refused 3 'holds a character' waves.png -o 'map.png:s
 check 'an output that is an input in other letters' refused 2 'is the input' waves.png -o WAVES.PNG
 check 'an output that is an input by a dot' refused 2 'is the input' waves.png -o 'waves.png.' --container png
 check 'a missing folder' refused 3 'the directory does not exist' waves.png -o none/a.png
-check 'a read-only file' bash -c 'cp map.png fixed.png; chmod a-w fixed.png; true'
+cp map.png fixed.png
+chmod a-w fixed.png
+check 'a read-only file' refused 3 'permission denied' waves.png -o fixed.png
 check 'a missing input' refused 3 'no such file or directory' none.png -o b.png
 check 'OpenColorIO' refused 4 'without it (TEX_OCIO=OFF)' waves.png -o b.png --color-space x --ocio-config waves.png
 standard_streams() {

@@ -57,12 +57,12 @@ WINDOWS |= {
     "nlohmann-json3": PARTS["nlohmann-json3"],
     "tomlplusplus": PARTS["tomlplusplus"],
     "gcc-mingw-w64": Part(GCC, "stdc++ gcc gcc_eh", "gcc-mingw-w64-x86-64-posix-runtime"),
-    "mingw-w64": Part("ZPL-2.1 AND MIT AND LicenseRef-public-domain", "mingw32 mingwex moldname msvcrt pthread winpthread "
-                      "kernel32 user32 advapi32 shell32 gdi32 winspool ole32 oleaut32 uuid comdlg32",
-                      "mingw-w64-x86-64-dev"),
+    "mingw-w64": Part("ZPL-2.1 AND MIT AND LicenseRef-public-domain",
+                      "mingw32 mingwex moldname msvcrt m pthread kernel32 user32 advapi32 shell32", "mingw-w64-x86-64-dev"),
+    "onetbb": Part("Apache-2.0", "tbb12"),
     "libz-mingw-w64": Part("Zlib", "z", "libz-mingw-w64-dev"),
 }
-OWN = {"tex", "tex_cli", "tex_all", "libtex-commands"}
+OWN = {"tex", "tex_cli", "libtex-commands.dll"}
 
 
 def linked(trace: Path) -> set[str]:
