@@ -116,10 +116,10 @@ bool fails() {
 }
 
 // oneTBB 2022 cannot stand an allocator without memory while the first arena starts:
-// threading_control::create_threading_control() (threading_control.cpp:215) takes the locks of all global controls,
-// cache_aligned_allocate() fails at line 223, and to throw, do_throw() (exception.cpp) asks
-// terminate_on_exception(), which takes one of these locks again and waits for ever in sched_yield(). A program
-// that holds nothing but an arena does the same. So the calls of its allocator do not fail there.
+// threading_control::create_threading_control() (threading_control.cpp:215) takes the locks of all global controls, an
+// allocation under them (line 223 or 224) fails, and before it throws, do_throw() (exception.cpp) asks
+// terminate_on_exception(), which takes one of these locks again and waits for ever in sched_yield(). A program that
+// holds nothing but an arena does the same. So the calls of its allocator do not fail there.
 bool waits_for_ever(const void* caller) {
     Dl_info about{};
     return TBB_VERSION_MAJOR >= 2022 && dladdr(caller, &about) != 0 && about.dli_fname != nullptr &&
