@@ -20,7 +20,7 @@ HWY_INLINE void StoreLine(const AstcLine<kChannels, kPartitions>& line, int weig
     const std::size_t end = static_cast<std::size_t>(weights) * hn::Lanes(d);
     for (std::size_t k = 0; k < end; k += hn::Lanes(d))
         hn::Store(hn::Load(d, line.best().weights + k), d, fits.weights[plane] + k);
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < line.partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             for (int e = 0; e < 2; ++e) hn::Store(line.best().ends.at[p][c][e], d, fits.ends[p][plane + c][e]);
         }
@@ -49,8 +49,7 @@ void FitAstcTo(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& gr
 }
 
 void FitAstc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
-    if (plan.partitions == 3) return FitAstcTo<3>(plan, steps, group, fits);
-    if (plan.partitions == 2) return FitAstcTo<2>(plan, steps, group, fits);
+    if (plan.partitions > 1) return FitAstcTo<3>(plan, steps, group, fits);
     FitAstcTo<1>(plan, steps, group, fits);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc_line-inl.h: blocks side by side, of which one set of weights interpolates one or two channels, in one to three
-// partitions. Include it after hwy/highway.h, once for each target.
+// astc_line-inl.h: blocks side by side, of which one set of weights interpolates one or two channels, in one partition
+// or in up to three. Include it after hwy/highway.h, once for each target.
 
 #if defined(TEX_KERNELS_ASTC_LINE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TEX_KERNELS_ASTC_LINE_INL_H
@@ -48,7 +48,7 @@ public:
     AstcLine(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, const float* v0, const float* v1)
         : plan_(plan), steps_(steps), partition_(group.partition), turn_(group.turn), value_{v0, v1} {
         best_.error = hn::Set(d_, 1e30f);
-        for (int p = 0; p < kPartitions; ++p) {
+        for (int p = 0; p < partitions(); ++p) {
             offset_[p] = hn::Load(d_, group.offset + at(p));
             const auto has_offset = hn::Gt(offset_[p], number(0.5f));
             use_[p] = hn::AllFalse(d_, has_offset) ? kNoOffsets : hn::AllTrue(d_, has_offset) ? kOffsets : kBoth;
@@ -56,6 +56,8 @@ public:
     }
 
     [[nodiscard]] const AstcBest<kChannels, kPartitions>& best() const { return best_; }
+    // One, or as many as the plan has: code for each number would take too much room.
+    [[nodiscard]] HWY_INLINE int partitions() const { return kPartitions == 1 ? 1 : plan_.partitions; }
 
     void fit() {
         Ends starts[kMostStarts];
@@ -93,7 +95,7 @@ private:
     template <class Value>
     HWY_INLINE AstcFloat of_texel(int k, Value value) const {
         AstcFloat result = value(0);
-        for (int p = 1; p < kPartitions; ++p) {
+        for (int p = 1; p < partitions(); ++p) {
             const AstcFloat partition = hn::Load(d_, partition_ + at(k));
             result = hn::IfThenElse(hn::Gt(partition, number(static_cast<float>(p) - 0.5f)), value(p), result);
         }

@@ -86,15 +86,16 @@ struct AstcPartShape {
     // Along the lines of partitions; x; y.
     alignas(64) float field[3][kAstcMostPlanned * kAstcLanes];
     alignas(64) float line[3][kAstcMostPlanned * kAstcLanes];  // the first one, for each partition; 0 outside
-    FloatVec line_range, ranges;  // the mean over the texels of the squared ranges of their partitions
+    FloatVec line_range, ranges;    // the mean over the texels of the squared ranges of their partitions
     FloatVec narrow, narrow_share;  // bits of the partitions that are narrow; how many of all that is
-    FloatVec coarse[kAstcCoarseLevels];  // what 2, 3 ... levels leave along the lines, of what they leave of even spreads
+    FloatVec
+        coarse[kAstcCoarseLevels];  // what 2, 3 ... levels leave along the lines, of what they leave of even spreads
 };
 
 struct AstcSpan {
     FloatVec least, greatest;
 };
-HWY_INLINE AstcSpan SpanOf(const float* value, const float* part, int p, std::size_t end) {
+HWY_NOINLINE AstcSpan SpanOf(const float* value, const float* part, int p, std::size_t end) {
     const FloatTag d;
     AstcSpan span = {AstcNumber(1e6f), AstcNumber(-1e6f)};
     for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
@@ -105,7 +106,7 @@ HWY_INLINE AstcSpan SpanOf(const float* value, const float* part, int p, std::si
     return span;
 }
 
-HWY_INLINE void MovePart(float* value, const float* part, int p, FloatVec by, std::size_t end) {
+HWY_NOINLINE void MovePart(float* value, const float* part, int p, FloatVec by, std::size_t end) {
     const FloatTag d;
     for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
         const FloatVec v = hn::Load(d, value + k);
@@ -159,15 +160,14 @@ void MeasureParts(const AstcShape& shape, const float* part, int partitions, int
         made.ranges = hn::Add(made.ranges, hn::Mul(share, both));
         const auto is_narrow = hn::Le(hn::Max(range[1], range[2]), AstcNumber(kAstcNarrow));
         made.narrow = hn::Add(made.narrow, hn::IfThenElseZero(is_narrow, AstcNumber(static_cast<float>(1 << p))));
-        made.narrow_share = hn::Add(
-            made.narrow_share, hn::IfThenElseZero(is_narrow, AstcNumber(1.0f / static_cast<float>(partitions))));
+        made.narrow_share = hn::Add(made.narrow_share,
+                                    hn::IfThenElseZero(is_narrow, AstcNumber(1.0f / static_cast<float>(partitions))));
         for (std::size_t k = 0; k < end; k += lanes) {
             const FloatVec along = hn::Load(d, made.field[0] + k);
             hn::Store(AstcInside(hn::Load(d, part + k), p, along, zero), d, made.line[p] + k);
         }
         for (int l = 0; l < kAstcCoarseLevels; ++l) {
-            leave[l] =
-                hn::Add(leave[l], CoarseLeave(made.field[0], part, p, range[0], static_cast<float>(l + 1), end));
+            leave[l] = hn::Add(leave[l], CoarseLeave(made.field[0], part, p, range[0], static_cast<float>(l + 1), end));
         }
     }
     for (int l = 0; l < kAstcCoarseLevels; ++l) made.coarse[l] = CoarseShare(leave[l], made.line_range, l, texels);
@@ -178,8 +178,8 @@ void MeasureParts(const AstcShape& shape, const float* part, int partitions, int
 struct AstcTurned {
     FloatVec left, turns;
 };
-HWY_INLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const float* rows, int partitions,
-                                  FloatVec energy) {
+HWY_NOINLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const float* rows, int partitions,
+                                    FloatVec energy) {
     const FloatTag d;
     const FloatVec zero = hn::Zero(d);
     FloatVec sum[6];

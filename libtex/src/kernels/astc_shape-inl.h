@@ -83,7 +83,7 @@ struct AstcShape {
     FloatVec line_middle;
 };
 
-HWY_INLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shape) {
+static HWY_NOINLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shape) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
     const FloatVec over = AstcNumber(1.0f / static_cast<float>(texels));
@@ -131,8 +131,8 @@ HWY_INLINE void MeasureShape(const AstcGroup& group, int texels, AstcShape& shap
 }
 
 // Replaces each row of texels of a few channels by its coordinates in the space that so many weights span.
-HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
-                            float* rows) {
+static HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
+                                     float* rows) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
@@ -153,7 +153,8 @@ HWY_INLINE void ProjectRows(const AstcGuide& guide, int weights, const float* co
 
 // The sums of products in the space of a grid, of rows that are projected: of two channels xx, yy and xy; of three xx,
 // yy, zz, xy, xz and yz.
-HWY_INLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, int count, FloatVec* e) {
+static HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, int count,
+                                        FloatVec* e) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const int height = guide.plans->block.height;
@@ -182,10 +183,10 @@ HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec ot
     return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
 }
 
-// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a partition,
-// or of all texels.
-HWY_INLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
-                                std::size_t end) {
+// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a
+// partition, or of all texels.
+static HWY_NOINLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
+                                         std::size_t end) {
     const FloatTag d;
     const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
     const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);

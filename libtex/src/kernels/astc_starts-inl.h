@@ -26,7 +26,7 @@ HWY_INLINE AstcFloat AstcLine<kChannels, kPartitions>::in_partition(int p, int k
 template <int kChannels, int kPartitions>
 AstcEnds<kChannels, kPartitions> AstcLine<kChannels, kPartitions>::outer_ends() const {
     Ends ends;
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < partitions(); ++p) {
         if (kChannels == 1) {
             AstcFloat least = number(1e6f), greatest = number(-1e6f);
             for (int k = 0; k < plan_.grid->texels; ++k) {
@@ -111,7 +111,7 @@ void AstcLine<kChannels, kPartitions>::make_starts(Ends* starts) {
     starts[0] = starts[1] = outer;
     if (steps_.insets == 0) return;
     make_ideal(outer);
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < partitions(); ++p) {
         AstcFloat best[2][2];
         try_starts(p, best);
         for (int n = 0; n < 2; ++n) {

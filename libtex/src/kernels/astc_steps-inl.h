@@ -21,7 +21,7 @@ inline constexpr float kAstcLeastSquare = 1e-4f;
 template <int kChannels, int kPartitions>
 void AstcLine<kChannels, kPartitions>::make_ideal(const Ends& ends) {
     AstcFloat step[kPartitions][kChannels], square[kPartitions];
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p == 0 || p < partitions(); ++p) {  // GCC must see that there is one
         AstcFloat sum = hn::Zero(d_);
         for (int c = 0; c < kChannels; ++c) {
             step[p][c] = hn::Sub(ends.at[p][c][1], ends.at[p][c][0]);
@@ -130,7 +130,7 @@ HWY_INLINE void AstcLine<kChannels, kPartitions>::change_weight(int w, bool roun
 // The endpoints of least squares for the weights of texels, rounded to those that can be stored.
 template <int kChannels, int kPartitions>
 void AstcLine<kChannels, kPartitions>::make_ends(Ends& ends) const {
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < partitions(); ++p) {
         AstcFloat n = hn::Zero(d_), sw = n, sww = n, sv[kChannels], swv[kChannels];
         for (int c = 0; c < kChannels; ++c) sv[c] = swv[c] = n;
         for (int k = 0; k < plan_.grid->texels; ++k) {
@@ -178,7 +178,7 @@ void AstcLine<kChannels, kPartitions>::make_ends(Ends& ends) const {
 
 // The endpoint that can be stored and is nearest, or the one below it (way -1) or above it (1).
 template <int kChannels, int kPartitions>
-AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int way) const {
+HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, base = code;
     if (use_[p] != kOffsets) {
@@ -194,7 +194,8 @@ AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int 
 
 // The same for the other endpoint. An offset depends on the base.
 template <int kChannels, int kPartitions>
-AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcFloat first, AstcFloat end, int way) const {
+HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcFloat first, AstcFloat end,
+                                                                    int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, sum = code;
     if (use_[p] != kOffsets) {
@@ -246,7 +247,7 @@ AstcFloat AstcLine<kChannels, kPartitions>::error_of(const Ends& ends) const {
     const hn::RebindToUnsigned<FloatTag> du;
     AstcFloat sum = hn::Zero(d_);
     AstcFloat begin[kPartitions][kChannels], step[kPartitions][kChannels];
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p == 0 || p < partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             begin[p][c] = hn::Add(hn::Mul(ends.at[p][c][0], number(257.0f)), number(0.5f));
             step[p][c] = hn::Mul(hn::Sub(ends.at[p][c][1], ends.at[p][c][0]), number(257.0f / 64.0f));
@@ -274,7 +275,7 @@ bool AstcLine<kChannels, kPartitions>::keep(const Ends& ends) {
     const auto better = hn::Lt(error, best_.error);
     if (hn::AllFalse(d_, better)) return false;
     best_.error = hn::IfThenElse(better, error, best_.error);
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             for (int e = 0; e < 2; ++e)
                 best_.ends.at[p][c][e] = hn::IfThenElse(better, ends.at[p][c][e], best_.ends.at[p][c][e]);
@@ -291,7 +292,7 @@ bool AstcLine<kChannels, kPartitions>::keep(const Ends& ends) {
 template <int kChannels, int kPartitions>
 bool AstcLine<kChannels, kPartitions>::polish() {
     bool is_better = false;
-    for (int p = 0; p < kPartitions; ++p) {
+    for (int p = 0; p < partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             for (int way = 0; way < 9; ++way) {
                 if (way == 4) continue;
