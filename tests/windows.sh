@@ -188,7 +188,7 @@ unit_tests() {
     (cd build/mingw && "$wine" ./unit_tests.exe --gtest_brief=1 ${TEX_UNIT_FILTER:+--gtest_filter="$TEX_UNIT_FILTER"}) \
         >"$unit_log" 2>&1 || true
     # As tests/CMakeLists.txt chooses them.
-    headers=$(sed -n 's/^  set(left_out "\(.*\)")$/\1/p' tests/CMakeLists.txt | tr -d '\\')
+    headers=$(sed -n 's/^  set(left_out "\(.*\)")$/\1/p' tests/CMakeLists.txt | tr -d '\134')
     mapfile -t left < <(grep -lE "$headers" tests/unit/*.cpp)
     echo "left out: $(for file in "${left[@]}"; do basename "$file" _test.cpp; done | tr '\n' ' ')"
     skipped=$((skipped + $(cat "${left[@]}" | grep -cE '^(TEST|TEST_F|TEST_P)\(')))
