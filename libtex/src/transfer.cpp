@@ -109,6 +109,7 @@ bool has_area(const RayGroups& groups) {
 Error no_hit(const TangentSpace& low, const RayGroups& groups, const TransferredMaps& result) {
     const std::string reach = "rays reach " + plain(result.front) + " in front and " + plain(result.back) + " behind";
     const double distance = distance_between(low.part, groups);
+    if (!has_area(groups)) return {ErrorCode::bad_option, low.file, "no triangle of the high mesh has an area"};
     if (result.diagonal == 0.0)
         return {ErrorCode::bad_option, low.file, "all corners of its triangles are in one place"};
     if (distance > std::max(result.front, result.back)) {
@@ -116,7 +117,6 @@ Error no_hit(const TangentSpace& low, const RayGroups& groups, const Transferred
                 "no ray hits the high mesh, which is " + plain(distance) + " away, while " + reach +
                     ": both must be in the same place and unit"};
     }
-    if (!has_area(groups)) return {ErrorCode::bad_option, low.file, "no triangle of the high mesh has an area"};
     if (result.behind > 0) {
         return {
             ErrorCode::bad_option, low.file,

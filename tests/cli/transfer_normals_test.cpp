@@ -183,7 +183,7 @@ TEST_F(TransferNormals, ExplainsWhatIsWrongWithTheMeshes) {
     refuses({"sheet.obj", "point.obj", "-o", "x.png", "--quiet"}, 4, "no triangle of the high mesh has an area");
     scratch_.write("dot.obj", "v 1 1 0\nv 1 1 0\nv 1 1 0\nvn 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1/1 2/2/1 3/3/1\n");
     refuses({"dot.obj", "sheet.obj", "-o", "x.png", "--quiet"}, 4, "all corners of its triangles are in one place");
-    refuses({"crate_low.glb", "crate_high.glb", "-o", "x.png", "--high-color", "x.png", "--color-out", "c.png"}, 4,
+    refuses({"crate_low.glb", "crate_high.glb", "-o", "x.png", "--high-color", "none.png", "--color-out", "c.png"}, 4,
             "crate_high.glb: part \"crate_high\" has no UVs, which --high-color needs");
     scratch_.write("materials.obj", std::string(kSheetObj) + "usemtl wood\nf 1/1/1 2/2/2 5/5/5\n");
     refuses({"materials.obj", "sheet.obj", "-o", "x.png"}, 4, "--material chooses one");

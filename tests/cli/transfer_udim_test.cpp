@@ -85,7 +85,7 @@ TEST_F(TransferUdim, StoresHeightsOfAllTilesInOneRange) {
         high += line.substr(0, last) + fmt::format(" {}\n", std::stod(line.substr(last)) + (vertex++ < 9 ? -0.1 : 0.2));
     }
     scratch_.write("high.obj", high);
-    const Ran ran = does({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png", "--json"});
+    const Ran ran = go({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png", "--json"});
     const auto lines = lines_as_json(ran);
     ASSERT_EQ(lines.size(), 2u) << ran.out;
     const double low = lines[0]["heights"]["stored"][0], top = lines[0]["heights"]["stored"][1];
@@ -95,9 +95,9 @@ TEST_F(TransferUdim, StoresHeightsOfAllTilesInOneRange) {
     for (const auto& [tile, height] : {std::pair{"1001", -0.1}, std::pair{"1012", 0.2}}) {
         const auto picture = read_image(scratch_.path(fmt::format("h.{}.png", tile)));
         ASSERT_TRUE(picture);
-        EXPECT_NEAR(low + (top - low) * static_cast<double>(picture->planes[0].at(48, 48)), height, 1e-4);
+        EXPECT_NEAR(low + (top - low) * static_cast<double>(picture->planes[0].at(48, 48)), height, 2e-3);
     }
-    const Ran said = does({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png"});
+    const Ran said = go({"low.obj", "high.obj", "-o", "n.<UDIM>.png", "--height-out", "h.<UDIM>.png"});
     EXPECT_NE(said.out.find("h.1012.png: heights from -"), std::string::npos) << said.out;
 }
 
