@@ -45,7 +45,8 @@ std::vector<FileKey> keys_of_file(const std::string& path, int standard) {
     std::vector<FileKey> keys;
     if (path.empty()) return keys;
     const auto status = path == "-" ? status_of_open(standard) : status_of(path);
-    if (status && status->is_regular()) keys.push_back({status->device, status->inode});
+    // Not every system knows which file was redirected to a stream.
+    if (status && status->is_regular() && status->inode != 0) keys.push_back({status->device, status->inode});
     if (path == "-") return keys;
     keys.push_back(place_of_file(path));
     const std::string target = slashed(target_of_links(path));
