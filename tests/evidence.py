@@ -115,7 +115,7 @@ have in the gate, all in the nightly run), with 1, 2, 3 and 8 threads; the night
 under QEMU.
 
 Three exceptions: heights that OpenColorIO converted; EXR inputs compressed with DWAA or DWAB, on processors without AVX;
-and the compression of ASTC, PNG, EXR, TIFF, TGA, BMP and JPEG outputs, with another build of the encoding library.
+and the compression of PNG, EXR, TIFF, TGA, BMP and JPEG outputs, with another build of the encoding library.
 
 ## Fuzzing
 

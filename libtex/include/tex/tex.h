@@ -34,7 +34,7 @@
 //    No exception leaves libtex.
 // 3. The same bytes everywhere: for every number of threads, instruction set and compiler. There are three exceptions:
 //    heights converted by OpenColorIO; EXR inputs compressed with DWAA or DWAB, on processors without AVX; and the
-//    compression of ASTC, PNG, EXR, TIFF, TGA, BMP, JPEG outputs, with another build of the encoding library.
+//    compression of PNG, EXR, TIFF, TGA, BMP, JPEG outputs, with another build of the encoding library.
 // 4. The library is silent: no stdout, stderr, exit, environment or locale. Progress and cancellation are callbacks
 //    (Execution).
 // 5. Units are in the name or in the comment: texels, degrees, bytes. Strides are in elements, pitches in bytes.
