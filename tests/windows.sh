@@ -110,9 +110,9 @@ writes() { # writes NAME ARGUMENT...: the file is there, with the bytes of map.p
     bake "$@" --format rgb8 && cmp -s "$name" map.png
 }
 check 'a name in UTF-8' writes 'höhe-地図.png' -o 'höhe-地図.png'
-check 'backslashes' writes out/deep/a.png --name 'out\deep\a.png'
+check 'backslashes' writes out/deep/a.png --out-dir out --name 'deep\a.png'
 long=$(printf 'a%.0s' {1..120})
-check 'a path longer than 260 characters' writes "$long/$long/$long/a.png" --name "$long/$long/$long/a.png"
+check 'a path longer than 260 characters' writes "$long/$long/$long/a.png" --out-dir "$long" --name "$long/$long/a.png"
 mkdir -p lib
 cp map.png lib/Old.png
 check 'an output replaces a file' writes lib/Old.png -o lib/Old.png
