@@ -101,19 +101,16 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
         auto grid = std::find_if(grids.begin(), grids.end(),
                                  [&](const AstcGuide::Grid& made) { return made.extent == mode.grid; });
         if (grid == grids.end()) {
-            grids.push_back({mode.grid, {}, false});
-            grid = grids.end() - 1;
+            const auto wider = std::find_if(grids.begin(), grids.end(), [&](const AstcGuide::Grid& made) {
+                return made.extent.width > mode.grid.width;
+            });
+            grid = grids.insert(wider, {mode.grid, {}, false});
         }
         grid->choices.push_back(choice);
         grid->has_planes = grid->has_planes || mode.planes == 2;
     }
     if (reach.best_alone) {
         for (AstcGuide::Grid& grid : guide.grids) keep_best(grid.choices);
-    }
-    for (auto* grids : {&guide.grids, &guide.of_parts[0], &guide.of_parts[1]}) {
-        std::stable_sort(grids->begin(), grids->end(), [](const AstcGuide::Grid& a, const AstcGuide::Grid& b) {
-            return a.extent.width < b.extent.width;
-        });
     }
     for (int p = 0; p < 2; ++p) {
         for (std::size_t k = 0; k < plans.patterns[p].size(); k += static_cast<std::size_t>(reach.pattern_steps))
