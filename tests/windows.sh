@@ -10,9 +10,9 @@
 # builds none of them.
 # The last line is "windows: N passed, M failed, K skipped". Exits 77 without an archive or Wine.
 #
-# Left out, and counted as skipped: the unit tests whose sources use fork, signals, /proc, access lists, pipes, or
-# judges that Debian does not have for mingw-w64 (libsquish, astcenc). They are named below. The command tests are
-# programs for POSIX; what of them concerns Windows is repeated here.
+# Left out, and counted as skipped: the unit tests that take paths for texts (std::filesystem::path is one on POSIX
+# systems alone), or use what these alone have, or judges that Debian does not have for mingw-w64 (libsquish, astcenc).
+# They are named below. The command tests are programs for POSIX; what of them concerns Windows is repeated here.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -188,23 +188,32 @@ unit_tests() {
     PKG_CONFIG_LIBDIR=$prefix/lib/pkgconfig cmake -B build/mingw -DBUILD_TESTING=ON \
         -DTEX_UNIT_TESTS="${TEX_UNIT_TESTS:-}" >/dev/null &&
         cmake --build build/mingw --target unit_tests >build/windows/unit_build.log || return 1
-    (cd build/mingw && "$wine" ./unit_tests.exe --gtest_brief=1) >"$unit_log" 2>&1 || true
+    # Its judge is sinl() of mingw-w64, which is x87's fsin: up to two million units in the last place off at 10^6. The
+    # sines of libtex have the bits of Linux.
+    judged='Math.SinAndCosAreWithinOneAndAHalfUlpAndLargeAnglesWithinTwoAndAHalf'
+    (cd build/mingw && "$wine" ./unit_tests.exe --gtest_brief=1 --gtest_filter="-$judged") >"$unit_log" 2>&1 || true
     # As tests/CMakeLists.txt chooses them.
     headers=$(sed -n '/set(left_out/{s/.*(left_out "\(.*\)")$/\1/;s/\\//g;p}' tests/CMakeLists.txt)
-    mapfile -t left < <(grep -lE "$headers" tests/unit/*.cpp)
-    echo "left out: $(for file in "${left[@]}"; do basename "$file" _test.cpp; done | tr '\n' ' ')"
-    skipped=$((skipped + $(cat "${left[@]}" | grep -cE '^(TEST|TEST_F|TEST_P)\(')))
-    grep -qE '^\[  PASSED  \]' "$unit_log"
+    mapfile -t left < <(grep -lE "$headers" tests/unit/*.cpp | grep -v /descriptor_test)
+    [ -z "${TEX_UNIT_TESTS:-}" ] || mapfile -t left < <({
+        printf '%s\n' "${left[@]}"
+        printf '%s\n' tests/unit/*.cpp | grep -vE "/($TEX_UNIT_TESTS)[^/]*$"
+    } | sort -u)
+    echo "left out: $judged $(for file in "${left[@]}"; do basename "$file" _test.cpp; done | tr '\n' ' ')"
+    skipped=$((skipped + 1 + $(cat "${left[@]}" | grep -cE '^(TEST|TEST_F|TEST_P)\(')))
+    grep -qE '^\[==========\] [0-9]+ tests from [0-9]+ test suites ran' "$unit_log"
 }
+count() { sed -n "s/^\[  $1 *\] \([0-9]*\) tests\?[.,].*/\1/p" "$unit_log" | head -n 1; }
 if [ "${TEX_UNIT_TESTS:-}" = - ]; then
     echo 'left out: all unit tests'
     skipped=$((skipped + $(cat tests/unit/*_test.cpp | grep -cE '^(TEST|TEST_F|TEST_P)\(')))
 elif unit_tests; then
-    count() { sed -n "s/^\[  $1 *\] \([0-9]*\) tests\?.*/\1/p" "$unit_log" | head -n 1; }
     passed=$((passed + $(count PASSED)))
-    failed=$((failed + $(count FAILED || echo 0) + 0))
-    skipped=$((skipped + $(count SKIPPED || echo 0) + 0))
-    grep -E '^\[  FAILED  \]' "$unit_log" || true
+    skips=$(count SKIPPED)
+    skipped=$((skipped + ${skips:-0}))
+    failures=$(grep -cE '^\[  FAILED  \] .* \([0-9]+ ms\)$' "$unit_log" || true)
+    failed=$((failed + failures))
+    grep -E '^\[  FAILED  \] .* ms\)$' "$unit_log" || true
 else
     failed=$((failed + 1))
     tail -n 20 "$unit_log" || true
