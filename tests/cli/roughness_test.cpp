@@ -114,6 +114,8 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
                          "a.ktx2", "--roughness-format", "astc-6x5"});
     EXPECT_EQ(texture("a.ktx2").format, Format::astc_6x5_unorm);
     EXPECT_NEAR(mean("a.ktx2", 0), 0.25, 1.0 / 2048);
+    const std::string said = run(scratch_, "check-normals", {"a.ktx2"}).out;
+    EXPECT_EQ(said.find("N115"), std::string::npos) << "one value everywhere has no layout: " << said;
     for (const auto& [word, format] : {std::pair{"r8", Format::r8_unorm},
                                        {"r16", Format::r16_unorm},
                                        {"half", Format::r16_float},

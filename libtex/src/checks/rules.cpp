@@ -87,7 +87,7 @@ constexpr Rule kRules[] = {
      "gives NaN in a shader.",
      "pack-normals FILE --normalize --format SAME -o FIXED", "N201"},
     {"N206", "constant", values, note, true, "All texels are the same.",
-     "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N201 N207 N208 N209 N305 N403 N219"},
+     "A placeholder or a failed bake: a texture of 1x1 would do.", "", "N115 N201 N207 N208 N209 N305 N403 N219"},
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
      "The mean of the normals is more than 10 degrees off (0, 0, 1). A map over a flat surface has no lean; one "
      "channel was shifted, or the surface behind a bake was not flat.",
