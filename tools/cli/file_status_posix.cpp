@@ -63,7 +63,10 @@ ReadFile open_at_once(const std::string& path, Links links, FileStatus& status) 
     const int no_links = links == Links::refused ? O_NOFOLLOW : 0;
     const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | no_links);
     ReadFile file(fd < 0 ? nullptr : fdopen(fd, "rb"), close_file);
-    if (!file) return file;
+    if (!file) {
+        if (fd >= 0) close(fd);
+        return file;
+    }
     std::setvbuf(file.get(), nullptr, _IONBF, 0);  // whoever calls read_from() has a buffer
     const std::optional<FileStatus> found = status_of_open(fd);
     if (!found) return {nullptr, close_file};

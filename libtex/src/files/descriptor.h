@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// descriptor.h: open files, by the numbers of the C library, and what the system says about files. Each system has a
-// source of its own (descriptor_*.cpp).
+// descriptor.h: open files, by the numbers of the C library, and what the system says about files. descriptor_posix.cpp
+// and descriptor_windows.cpp implement it.
 //
 // Functions that fail set errno.
 
