@@ -98,9 +98,9 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         // All energies inside the space of the grid; the rest is error.
         FloatVec in[3] = {shape.xx, shape.yy, shape.xy};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows(guide, grid.extent.width, channels, 2, rows);
+            if (grid.extent.width != width) ProjectRows<2>(guide, grid.extent.width, channels, rows);
             width = grid.extent.width;
-            ProjectColumns(guide, grid.extent, rows, 2, in);
+            ProjectColumns<2>(guide, grid.extent, rows, in);
         }
         const FloatVec out_x = hn::Sub(shape.xx, in[0]), out_y = hn::Sub(shape.yy, in[1]);
         const FloatVec out_xy = hn::Sub(shape.xy, in[2]);

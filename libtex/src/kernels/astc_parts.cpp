@@ -183,11 +183,12 @@ HWY_NOINLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const f
     const FloatTag d;
     const FloatVec zero = hn::Zero(d);
     FloatVec sum[6];
-    ProjectColumns(guide, grid, rows, partitions, sum);
     if (partitions == 2) {
+        ProjectColumns<2>(guide, grid, rows, sum);
         const FloatVec cross = hn::Abs(sum[2]), inside = hn::Add(hn::Add(sum[0], sum[1]), hn::Add(cross, cross));
         return {hn::Sub(energy, inside), hn::IfThenElseZero(hn::Lt(sum[2], zero), AstcNumber(2.0f))};
     }
+    ProjectColumns<3>(guide, grid, rows, sum);
     const FloatVec squares = hn::Add(hn::Add(sum[0], sum[1]), sum[2]);
     FloatVec most = AstcNumber(-1e30f), turns = zero;
     for (int turn = 0; turn < 8; turn += 2) {
@@ -228,14 +229,18 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         AstcTurned one = {two, two};
         if (grid.extent != block) {
             if (grid.extent.width != width) {
-                if (has_planes) ProjectRows(guide, grid.extent.width, channels, 2, rows);
-                ProjectRows(guide, grid.extent.width, lines, partitions, line_rows);
+                width = grid.extent.width;
+                if (has_planes) ProjectRows<2>(guide, width, channels, rows);
+                if (partitions == 2) {
+                    ProjectRows<2>(guide, width, lines, line_rows);
+                } else {
+                    ProjectRows<3>(guide, width, lines, line_rows);
+                }
             }
-            width = grid.extent.width;
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
             if (grid.has_planes) {
                 FloatVec in[3];
-                ProjectColumns(guide, grid.extent, rows, 2, in);
+                ProjectColumns<2>(guide, grid.extent, rows, in);
                 two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
             }
         }

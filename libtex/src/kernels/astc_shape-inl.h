@@ -131,12 +131,12 @@ static HWY_NOINLINE void MeasureShape(const AstcGroup& group, int texels, AstcSh
 }
 
 // Replaces each row of texels of a few channels by its coordinates in the space that so many weights span.
-static HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
-                                     float* rows) {
+template <int kCount>
+HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* rows) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
-    for (int c = 0; c < count; ++c) {
+    for (int c = 0; c < kCount; ++c) {
         for (int j = 0; j < block.height; ++j) {
             const float* const from = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
             for (int w = 0; w < weights; ++w) {
@@ -153,25 +153,25 @@ static HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const 
 
 // The sums of products in the space of a grid, of rows that are projected: of two channels xx, yy and xy; of three xx,
 // yy, zz, xy, xz and yz.
-static HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, int count,
-                                        FloatVec* e) {
+template <int kCount>
+HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, FloatVec* e) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const int height = guide.plans->block.height;
-    for (int n = 0; n < 3 * (count - 1); ++n) e[n] = hn::Zero(d);
+    for (int n = 0; n < 3 * (kCount - 1); ++n) e[n] = hn::Zero(d);
     for (int w = 0; w < grid.width; ++w) {
         for (int h = 0; h < grid.height; ++h) {
             FloatVec sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
             for (int j = 0; j < height; ++j) {
                 const FloatVec share = AstcNumber(guide.basis[1][grid.height][h][j]);
-                for (int c = 0; c < count; ++c) {
+                for (int c = 0; c < kCount; ++c) {
                     const float* const from = rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes;
                     sum[c] = hn::Add(sum[c], hn::Mul(share, hn::Load(d, from)));
                 }
             }
-            for (int c = 0; c < count; ++c) e[c] = hn::Add(e[c], hn::Mul(sum[c], sum[c]));
-            e[count] = hn::Add(e[count], hn::Mul(sum[0], sum[1]));
-            if (count < 3) continue;
+            for (int c = 0; c < kCount; ++c) e[c] = hn::Add(e[c], hn::Mul(sum[c], sum[c]));
+            e[kCount] = hn::Add(e[kCount], hn::Mul(sum[0], sum[1]));
+            if (kCount < 3) continue;
             e[4] = hn::Add(e[4], hn::Mul(sum[0], sum[2]));
             e[5] = hn::Add(e[5], hn::Mul(sum[1], sum[2]));
         }
