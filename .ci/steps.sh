@@ -86,19 +86,23 @@ preset() {
     cmake --build --preset "$name" "${targets[@]}" && ctest --preset "$name" --output-junit "$results/$name.xml" "$@"
 }
 
-# The longest tests of the release, which the nightly run has: more instruction sets, pages with real models in a
-# browser, a statistic that sets thresholds.
+# The longest tests of the release, which the nightly run has: all instruction sets but one, pages with real models in a
+# browser, statistics that set thresholds, searches of everything, packages and releases.
 # shellcheck disable=SC2034  # used by the scripts that source this file
-longest='Matrix[.].*"(SSSE3|SSE4|AVX3|AVX3_DL|EMU128)"|CheckThresholds|ReportPage.LinksReachFilesAnywhereOnALongPage'
-longest+='|ReportMesh.DrawsModelsOfOthers|ReportMesh.LightsAMirroredMeshAsPreviewNormalsDoes'
+longest='Matrix[.].*"(SCALAR|EMU128|SSSE3|SSE4|AVX3|AVX3_DL)"|CheckThresholds|CheckData.FindsPlantedDamage'
+longest+='|ReportPage.LinksReachFilesAnywhereOnALongPage|ReportMesh.DrawsModelsOfOthers'
+longest+='|ReportMesh.LightsAMirroredMeshAsPreviewNormalsDoes|EacSearch.FindsTheOptimumOfEveryBlock'
+longest+='|MeshFit.FindsWrongSpacesOnRealModels|^consumer.packages$|^samples.(release|build_drills)$'
 
 # Tests that judge real maps, exhaustive searches, and the longest comparisons of whole runs: their results are the same
 # in every build, because the bytes are. And tests that make the system fail: their results do not depend on the
 # compiler.
 # shellcheck disable=SC2034  # used by the scripts that source this file
-judgements='CheckData.FindsPlantedDamage|CheckData.FindsNoDamage|CheckData.TellsEveryKnownDirection|CheckThresholds'
-judgements+='|BakeData|IntegrateData|Efforts.NoneIsWorseThanACheaperOneOnRealMaps|EacSearch.FindsTheOptimum'
-judgements+='|PlainFit.IsNever|MeshFit.FindsWrongSpaces|RdoStream|RdoOption.FilesAreSmaller|BakeNormals.HoldingAllRows'
-judgements+='|Steps.Joined'
+judgements='CheckData.(FindsPlantedDamage|FindsNoDamage|TellsEveryKnownDirection|CompressionOf|IntactMaps)'
+judgements+='|CheckThresholds|BakeData|IntegrateData|TransferData|DebandData|Guesses|FalseAlarms|OthersMatrix|MeshFit'
+judgements+='|Efforts.NoneIsWorseThanACheaperOneOnRealMaps|EacSearch.FindsTheOptimum|PlainFit.IsNever'
+judgements+='|AstcEncode.(IsCloser|MoreEffort)|RoundTrip.RepacksEveryRealTexture|StorageAngle|PngWrite.TakesNoMoreBytes'
+judgements+='|PngFilter.Paeth|Nearest.FillsFromTheNearestTexel|RdoStream|RdoOption.FilesAreSmaller'
+judgements+='|BakeNormals.HoldingAllRows|Steps.Joined|AtomicFile.(AKilledWriter|ManyWriters)'
 # shellcheck disable=SC2034
 failures='Faults|HostileFiles'

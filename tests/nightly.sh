@@ -37,11 +37,12 @@ scalar() {
         ctest --preset release --output-junit "$results/scalar.xml" -L unit -E "$judgements|$failures|Reader|Target"
 }
 
-# The commands and the Python module under the address sanitizer, and the bytes that commands make if the other compiler
-# has compiled them, on two instruction sets.
+# Under the sanitizers: the commands, the Python module, and the tests of the library that the gate leaves out. And the
+# bytes that commands make if the other compiler has compiled them, on two instruction sets.
 commands() {
     local status=0
     preset asan "cli_tests tex_python" -L 'cli|python' -E "$judgements" || status=1
+    preset asan unit_tests -L unit -R "$judgements" || status=1
     preset clang "" -L cli -R 'Matrix.*(SCALAR|AVX2)' || status=1
     return "$status"
 }

@@ -279,7 +279,7 @@ void write_astc(const AstcPlan& plan, const AstcContent& content, std::byte* blo
     const int count = 2 * plan.channels * plan.partitions;
     write_astc_ise(bits, header_bits(plan.partitions), plan.color_range, count, values);
 
-    std::uint8_t stored[kAstcMostWeights];
+    std::uint8_t stored[kAstcMostWeights] = {};
     const int planes = plan.mode.planes;
     for (int p = 0; p < planes; ++p) {
         for (int w = 0; w < plan.grid->weights; ++w)
