@@ -57,7 +57,6 @@ public:
 private:
     friend Result<void> write_atomically(const std::string&, std::span<const std::byte>, const AtomicFileOptions&);
     struct State;
-    [[nodiscard]] Result<void> put_into_place();
     explicit AtomicFile(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };

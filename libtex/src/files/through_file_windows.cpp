@@ -17,6 +17,8 @@ namespace tex::inline v1 {
 Result<std::optional<ThroughFile>> ThroughFile::open(const std::string& path) {
     if (const std::optional<int> fd = named_descriptor(path))
         return std::optional(ThroughFile(path, Descriptor(), *fd));
+    if (const char* const refusal = refusal_of_name(path); refusal != nullptr)
+        return Error{ErrorCode::io, path, refusal};
     const std::optional<FileStatus> status = FileStatus::of(path);
     if (!status || status->kind == FileKind::regular) return std::optional<ThroughFile>();
     if (status->kind == FileKind::folder) return system_error(path, EISDIR);

@@ -3,7 +3,7 @@
 // elsewhere, at a byte that no file has. Windows removes no file that another program reads without sharing it, so that
 // the rename may have to wait for a moment.
 
-#include "files/atomic_file.h"
+#include "files/pending_file.h"
 
 #include <fcntl.h>
 #include <io.h>
@@ -15,14 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include <tex/file.h>
-
+#include "files/atomic_file.h"
 #include "files/descriptor.h"
 #include "files/system_error.h"
-#include "files/through_file.h"
 #include "files/unfinished_files.h"
 #include "files/wide_windows.h"
-#include "threads/guard.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -76,6 +73,8 @@ bool may_write(const std::wstring& full) {
 }
 
 Result<Target> find_target(const std::string& path, const AtomicFileOptions& options) {
+    if (const char* const refusal = refusal_of_name(path); refusal != nullptr)
+        return Error{ErrorCode::io, path, refusal};
     Target target;
     target.path = path;
     target.full = system_path(path);
@@ -195,17 +194,11 @@ int rename_open(HANDLE file, const std::wstring& to, bool no_clobber) {
 
 }  // namespace
 
-AtomicFileOptions AtomicFileOptions::of(const WriteOptions& options) {
-    return {options.sync, options.no_clobber, options.follow_links, options.before_replacing, options.replaced};
-}
-
-struct AtomicFile::State {
+struct PendingFile::State {
     Target target;
-    AtomicFileOptions options;
     Descriptor file;
     std::wstring temporary;  // empty once the file has its name
     std::optional<UnfinishedFile> unfinished;
-    std::optional<ThroughFile> through;  // if set, nothing above is used
 
     ~State() {
         if (temporary.empty()) return;
@@ -217,77 +210,41 @@ struct AtomicFile::State {
     [[nodiscard]] HANDLE handle() const { return reinterpret_cast<HANDLE>(_get_osfhandle(file.get())); }
 };
 
-AtomicFile::AtomicFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
-AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
-AtomicFile::~AtomicFile() = default;
+PendingFile::PendingFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PendingFile::PendingFile(PendingFile&&) noexcept = default;
+PendingFile::~PendingFile() = default;
 
-Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
-    return guarded([&]() -> Result<AtomicFile> {
-        if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
-        if (const char* const refusal = refusal_of_name(path); refusal != nullptr && !named_descriptor(path))
-            return Error{ErrorCode::io, path, refusal};
-        auto state = std::make_unique<State>();
-        state->options = options;
-        if (options.follow_links || named_descriptor(path)) {
-            Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
-            if (!through) return through.error();
-            if (*through) {
-                state->through = std::move(*through);
-                return AtomicFile(std::move(state));
-            }
-        }
-        Result<Target> target = find_target(path, options);
-        if (!target) return target.error();
-        state->target = std::move(*target);
-        std::wstring temporary;
-        Result<Descriptor> file = open_named(state->target, temporary, state->unfinished.emplace());
-        if (!file) return file.error();
-        state->file = std::move(*file);
-        state->temporary = std::move(temporary);
-        return AtomicFile(std::move(state));
-    });
+Result<PendingFile> PendingFile::open(const std::string& path, const AtomicFileOptions& options) {
+    Result<Target> target = find_target(path, options);
+    if (!target) return target.error();
+    auto state = std::make_unique<State>();
+    state->target = std::move(*target);
+    std::wstring temporary;
+    Result<Descriptor> file = open_named(state->target, temporary, state->unfinished.emplace());
+    if (!file) return file.error();
+    state->file = std::move(*file);
+    state->temporary = std::move(temporary);
+    return PendingFile(std::move(state));
 }
 
-Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-    return guarded([&]() -> Result<void> {
-        if (state_->through) {
-            state_->through->hold(offset, bytes);
-            return {};
-        }
-        while (!bytes.empty()) {
-            const std::ptrdiff_t n = write_some_at(state_->file.get(), offset, bytes.data(), bytes.size());
-            if (n < 0) return system_error(state_->target.path, errno, "cannot be written");
-            bytes = bytes.subspan(static_cast<std::size_t>(n));
-            offset += static_cast<std::uint64_t>(n);
-        }
-        return {};
-    });
+int PendingFile::descriptor() const { return state_->file.get(); }
+
+Result<void> PendingFile::settle(bool sync) {
+    const Target& target = state_->target;
+    if (target.exists) keep_access(target, state_->handle());
+    if (sync && FlushFileBuffers(state_->handle()) == 0)
+        return system_error(target.path, set_errno(), "cannot be written");
+    return {};
 }
 
-Result<void> AtomicFile::commit() {
-    return guarded([&]() -> Result<void> {
-        if (state_->through) return state_->through->write_held();
-        const Target& target = state_->target;
-        const AtomicFileOptions& options = state_->options;
-        if (target.exists) keep_access(target, state_->handle());
-        if (options.sync && FlushFileBuffers(state_->handle()) == 0)
-            return system_error(target.path, set_errno(), "cannot be written");
-        if (options.before_replacing) {
-            if (Result<void> accepted = options.before_replacing(target.path, narrow(state_->temporary)); !accepted)
-                return accepted;
-        }
-        const Result<void> placed = put_into_place();
-        if (placed && options.replaced) options.replaced(target.path);
-        return placed;
-    });
-}
+std::string PendingFile::complete_path() const { return narrow(state_->temporary); }
 
-Result<void> AtomicFile::put_into_place() {
+Result<void> PendingFile::put_into_place(bool no_clobber) {
     const Target& target = state_->target;
     int failed = 0;
     {
         const NameSection section;
-        failed = rename_open(state_->handle(), target.full, state_->options.no_clobber);
+        failed = rename_open(state_->handle(), target.full, no_clobber);
         state_->unfinished->remove(section);
         if (failed == 0) {
             state_->temporary.clear();
@@ -295,17 +252,8 @@ Result<void> AtomicFile::put_into_place() {
         }
     }
     if (failed == 0) return {};
-    if (state_->options.no_clobber && failed == EEXIST) return exists_error(target);
+    if (no_clobber && failed == EEXIST) return exists_error(target);
     return system_error(target.path, failed, "cannot be put into place");
-}
-
-Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
-                              const AtomicFileOptions& options) {
-    Result<AtomicFile> file = AtomicFile::open(path, options);
-    if (!file) return file.error();
-    if (file->state_->through) return file->state_->through->write(bytes);
-    if (Result<void> written = file->write_at(0, bytes); !written) return written;
-    return file->commit();
 }
 
 }  // namespace tex::inline v1

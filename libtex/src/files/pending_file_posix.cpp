@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "files/atomic_file.h"
+#include "files/pending_file.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -14,29 +14,15 @@
 #include <optional>
 #include <utility>
 
-#include <tex/file.h>
-
+#include "files/atomic_file.h"
 #include "files/file_rights.h"
 #include "files/input_file.h"
 #include "files/nameless_file.h"
 #include "files/system_error.h"
-#include "files/through_file.h"
 #include "files/unfinished_files.h"
-#include "threads/guard.h"
 
 namespace tex::inline v1 {
 namespace {
-
-// Returns 0 or an errno.
-int write_fully(int fd, std::uint64_t offset, std::span<const std::byte> bytes) {
-    while (!bytes.empty()) {
-        const std::ptrdiff_t n = write_some_at(fd, offset, bytes.data(), bytes.size());
-        if (n < 0) return errno;
-        bytes = bytes.subspan(static_cast<std::size_t>(n));
-        offset += static_cast<std::uint64_t>(n);
-    }
-    return 0;
-}
 
 // Where the file goes, relative to its open directory.
 struct Target {
@@ -93,16 +79,6 @@ Result<Target> find_target(const std::string& path, const AtomicFileOptions& opt
         return system_error(path, errno);
     }
     return target;
-}
-
-// The last steps before a file gets its name. Returns 0 or an errno.
-int settle(int fd, const Target& target, bool sync) {
-    if (target.existing) keep_rights(fd, target.folder.get(), target.name, *target.existing);
-    while (sync && fdatasync(fd) != 0) {
-        if (errno == EINVAL) break;  // files of this type cannot be synchronised
-        if (errno != EINTR) return errno;
-    }
-    return 0;
 }
 
 // Returns 0 or an errno: EWOULDBLOCK if another process or descriptor holds the lock.
@@ -233,17 +209,11 @@ Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
 
 }  // namespace
 
-AtomicFileOptions AtomicFileOptions::of(const WriteOptions& options) {
-    return {options.sync, options.no_clobber, options.follow_links, options.before_replacing, options.replaced};
-}
-
-struct AtomicFile::State {
+struct PendingFile::State {
     Target target;
-    AtomicFileOptions options;
     Descriptor file;
     std::string temporary;                     // the name of the temporary file, if it has one
     std::optional<UnfinishedFile> unfinished;  // the same for remove_unfinished_files()
-    std::optional<ThroughFile> through;        // if set, nothing above is used
 
     ~State() {
         if (temporary.empty()) return;
@@ -253,88 +223,51 @@ struct AtomicFile::State {
     }
 };
 
-AtomicFile::AtomicFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
-AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
-AtomicFile::~AtomicFile() = default;
+PendingFile::PendingFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PendingFile::PendingFile(PendingFile&&) noexcept = default;
+PendingFile::~PendingFile() = default;
 
-Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
-    return guarded([&]() -> Result<AtomicFile> {
-        if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
-        auto state = std::make_unique<State>();
-        state->options = options;
-        if (options.follow_links || named_descriptor(path)) {
-            Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
-            if (!through) return through.error();
-            if (*through) {
-                state->through = std::move(*through);
-                return AtomicFile(std::move(state));
-            }
-        }
-        Result<Target> target = find_target(path, options);
-        if (!target) return target.error();
-        // A rename would replace a file that its owner has protected. A user who may not write the file may not replace
-        // it.
-        if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0) {
-            return system_error(path, errno);
-        }
-        state->target = std::move(*target);
-        Result<Descriptor> file = open_without_name(state->target);
-        if (file && !*file) file = open_named(state->target, state->temporary, state->unfinished.emplace());
-        if (!file) return file.error();
-        state->file = std::move(*file);
-        return AtomicFile(std::move(state));
-    });
+Result<PendingFile> PendingFile::open(const std::string& path, const AtomicFileOptions& options) {
+    Result<Target> target = find_target(path, options);
+    if (!target) return target.error();
+    // A rename would replace a file that its owner has protected. A user who may not write the file may not replace it.
+    if (target->existing && faccessat(target->folder.get(), target->name.c_str(), W_OK, AT_EACCESS) != 0)
+        return system_error(path, errno);
+    auto state = std::make_unique<State>();
+    state->target = std::move(*target);
+    Result<Descriptor> file = open_without_name(state->target);
+    if (file && !*file) file = open_named(state->target, state->temporary, state->unfinished.emplace());
+    if (!file) return file.error();
+    state->file = std::move(*file);
+    return PendingFile(std::move(state));
 }
 
-Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-    return guarded([&]() -> Result<void> {
-        if (state_->through) {
-            state_->through->hold(offset, bytes);
-            return {};
-        }
-        const int failed = write_fully(state_->file.get(), offset, bytes);
-        if (failed != 0) return system_error(state_->target.path, failed, "cannot be written");
-        return {};
-    });
-}
+int PendingFile::descriptor() const { return state_->file.get(); }
 
-Result<void> AtomicFile::commit() {
-    return guarded([&]() -> Result<void> {
-        if (state_->through) return state_->through->write_held();
-        const Target& target = state_->target;
-        const AtomicFileOptions& options = state_->options;
-        if (const int failed = settle(state_->file.get(), target, options.sync); failed != 0)
-            return system_error(target.path, failed, "cannot be written");
-        if (options.before_replacing) {
-            const std::string complete = path_of_open(state_->file.get());
-            if (Result<void> accepted = options.before_replacing(target.path, complete); !accepted) return accepted;
-        }
-        const Result<void> placed = put_into_place();
-        if (placed && options.replaced) options.replaced(target.path);
-        return placed;
-    });
-}
-
-Result<void> AtomicFile::put_into_place() {
+Result<void> PendingFile::settle(bool sync) {
     const Target& target = state_->target;
-    if (state_->temporary.empty()) return name_nameless(state_->file.get(), target, state_->options.no_clobber);
+    const int fd = descriptor();
+    if (target.existing) keep_rights(fd, target.folder.get(), target.name, *target.existing);
+    while (sync && fdatasync(fd) != 0) {
+        if (errno == EINVAL) break;  // files of this type cannot be synchronised
+        if (errno != EINTR) return system_error(target.path, errno, "cannot be written");
+    }
+    return {};
+}
+
+std::string PendingFile::complete_path() const { return path_of_open(descriptor()); }
+
+Result<void> PendingFile::put_into_place(bool no_clobber) {
+    const Target& target = state_->target;
+    if (state_->temporary.empty()) return name_nameless(descriptor(), target, no_clobber);
     const std::string temporary = std::exchange(state_->temporary, {});
     int failed = 0;
     {
         const NameSection section;
         state_->unfinished->remove(section);
-        failed = move_into_place(section, target, temporary, state_->options.no_clobber);
+        failed = move_into_place(section, target, temporary, no_clobber);
     }
-    return moved(target, failed, state_->options.no_clobber);
-}
-
-Result<void> write_atomically(const std::string& path, std::span<const std::byte> bytes,
-                              const AtomicFileOptions& options) {
-    Result<AtomicFile> file = AtomicFile::open(path, options);
-    if (!file) return file.error();
-    if (file->state_->through) return file->state_->through->write(bytes);
-    if (Result<void> written = file->write_at(0, bytes); !written) return written;
-    return file->commit();
+    return moved(target, failed, no_clobber);
 }
 
 }  // namespace tex::inline v1
