@@ -7,6 +7,8 @@
 # cannot be downloaded.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=samples/packaging/portable/arm64_root.sh
+. samples/packaging/portable/arm64_root.sh
 
 root=$PWD/build/arm64-root
 packages=(
@@ -14,27 +16,6 @@ packages=(
     libastcenc-dev
     libtbb-dev libhwy-dev libfmt-dev nlohmann-json3-dev libtomlplusplus-dev libgtest-dev libgmock-dev libsquish-dev
 )
-
-# Unpacks the packages for arm64 and what they depend on. Nothing is installed on this system.
-make_root() {
-    local state=$root.apt file link
-    rm -rf "$root" "$state"
-    mkdir -p "$root" "$state/lists/partial" "$state/cache/archives/partial"
-    touch "$state/status"
-    local options=(
-        -q -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root
-        -o "Dir::State::Lists=$state/lists" -o "Dir::State::status=$state/status" -o "Dir::Cache=$state/cache"
-    )
-    apt-get "${options[@]}" update || return 1
-    apt-get "${options[@]}" -y --no-install-recommends --download-only install "${packages[@]}" || return 1
-    for file in "$state"/cache/archives/*.deb; do dpkg -x "$file" "$root" || return 1; done
-    # Absolute links would lead out of the root.
-    find "$root" -type l -lname '/*' | while IFS= read -r link; do
-        ln -sfn "$root$(readlink "$link")" "$link"
-    done
-    rm -rf "$state"
-    touch "$root/complete"
-}
 
 # The commands under QEMU, with their names, for a test program of this machine that runs them.
 make_wrappers() {
@@ -63,7 +44,7 @@ tests() {
 }
 
 mkdir -p build
-if [ ! -e "$root/complete" ] && ! make_root >build/arm64-root.log 2>&1; then
+if ! arm64_root "$root" "${packages[@]}" >build/arm64-root.log 2>&1; then
     tail -n 5 build/arm64-root.log
     echo "arm64: not run: the mirror does not have the packages"
     exit 77

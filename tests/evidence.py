@@ -110,9 +110,8 @@ on half of them and reported on the other half.
 ## The same bytes
 
 The commands make {commands} outputs of the samples, whose hashes are in `tests/golden/commands.txt`; {files} files of
-libtex are fixed byte for byte. A test makes them on each instruction set of the processor (those that most processors
-have in the gate, all in the nightly run), with 1, 2, 3 and 8 threads; the nightly run repeats it with clang, and on arm64
-under QEMU.
+libtex are fixed byte for byte. A test makes them on each instruction set of the processor (AVX2 in the gate, all in the
+nightly run), with 1, 2, 3 and 8 threads; the nightly run repeats it with clang, and on arm64 under QEMU.
 
 Three exceptions: heights that OpenColorIO converted; EXR inputs compressed with DWAA or DWAB, on processors without AVX;
 and the compression of PNG, EXR, TIFF, TGA, BMP and JPEG outputs, with another build of the encoding library.

@@ -206,9 +206,13 @@ counted() {
 # Both README commands on Debian 13, and the first of them on sid.
 platforms() { counted platforms tests/platforms.sh trixie sid; }
 
-# The archive for every Linux, on each release of Debian.
+# The archive for every Linux, on each release of Debian, and the one for arm64, under QEMU.
 portable() {
-    samples/packaging/portable.sh && counted portable tests/portable.sh
+    local status=0
+    { samples/packaging/portable.sh --arm64 && counted portable tests/portable.sh --arm64; } || status=1
+    [ ! -e "$results/portable.xml" ] || mv "$results/portable.xml" "$results/portable-arm64.xml"
+    { samples/packaging/portable.sh && counted portable tests/portable.sh; } || status=1
+    return "$status"
 }
 
 # The archive for Windows, under Wine.

@@ -5,6 +5,7 @@
 # user without rights, from a folder with a space in its name. Its outputs must have the bytes of build/release.
 #
 #     tests/portable.sh [RELEASE...]    bullseye bookworm trixie forky sid, unless releases are named
+#     tests/portable.sh --arm64         the archive for arm64, under QEMU on this system
 #
 # Needs root, mmdebstrap, and the commands in build/release. The last line is "portable: N passed, M failed". Exits 77
 # without an archive, mmdebstrap or root.
@@ -12,9 +13,17 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 releases=("$@")
-[ "${#releases[@]}" -gt 0 ] || releases=(bullseye bookworm trixie forky sid)
+tool=
+made=build/portable
+if [ "${1:-}" = --arm64 ]; then
+    releases=()
+    tool=aarch64-linux-gnu-
+    made=build/portable-arm64
+elif [ $# -eq 0 ]; then
+    releases=(bullseye bookworm trixie forky sid)
+fi
 mirror=${MIRROR:-http://deb.debian.org/debian}
-archive=$(find build/portable -maxdepth 1 -name 'libtex-*-linux-x86_64.tar.xz' 2>/dev/null | head -n 1)
+archive=$(find "$made" -maxdepth 1 -name 'libtex-*-linux-*.tar.xz' 2>/dev/null | head -n 1)
 if [ -z "$archive" ] || [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
     echo 'portable: not run: needs an archive of samples/packaging/portable.sh, root and mmdebstrap'
     exit 77
@@ -25,6 +34,8 @@ trap 'rm -rf "$scratch"' EXIT
 tar -xf "$archive" -C "$scratch"
 tree=$scratch/$name
 
+emulator=()
+if [ -n "$tool" ]; then emulator=(qemu-aarch64-static); fi
 passed=0
 failed=0
 # check WHAT COMMAND...: one test.
@@ -38,8 +49,8 @@ programs() { find "$tree/bin" "$tree/libexec" -type f; }
 needs_no_library() {
     local program needed
     while IFS= read -r program; do
-        needed=$(objdump -p "$program" | grep -E 'NEEDED|INTERP' || true)
-        needed+=$(objdump -T "$program" 2>/dev/null | grep -E '\*UND\*' || true)
+        needed=$("${tool}objdump" -p "$program" | grep -E 'NEEDED|INTERP' || true)
+        needed+=$("${tool}objdump" -T "$program" 2>/dev/null | grep -E '\*UND\*' || true)
         [ -z "$needed" ] || { echo "$program: $needed"; return 1; }
     done < <(programs)
 }
@@ -81,7 +92,7 @@ PY
 refuses_other_names() {
     local status=0
     ln -s build-normals "$tree/bin/unknown-normals"
-    "$tree/bin/unknown-normals" 2>"$scratch/message" || status=$?
+    "${emulator[@]}" "$tree/bin/unknown-normals" 2>"$scratch/message" || status=$?
     rm "$tree/bin/unknown-normals"
     [ "$status" -eq 2 ] && grep -q 'acts by its name' "$scratch/message"
 }
@@ -119,6 +130,20 @@ works_in() {
     outputs_in "$root" >"$scratch/$1.sums" 2>"$log" || { tail -n 3 "$log"; return 1; }
     grep -q 'files restricted, system calls filtered' "$log" || { cat "$log"; return 1; }
     diff "$scratch/native.sums" "$scratch/$1.sums"
+}
+
+# The outputs of the programs for arm64. Commands start the reader by its name, so a script takes its place, too.
+works_under_qemu() {
+    local program
+    cp -r "$tree" "$scratch/emulated"
+    while IFS= read -r program; do
+        program=${program#"$tree/"}
+        rm "$scratch/emulated/$program"
+        printf '#!/bin/sh\nexec qemu-aarch64-static %q "$@"\n' "$tree/$program" >"$scratch/emulated/$program"
+        chmod +x "$scratch/emulated/$program"
+    done < <(find "$tree/bin" "$tree/libexec" -not -type d)
+    tests/portable_outputs.sh "$scratch/emulated/bin" "$PWD/samples" "$scratch/arm64" >"$scratch/arm64.sums" &&
+        diff "$scratch/native.sums" "$scratch/arm64.sums"
 }
 
 # Installs the wheel with pip, where there is Python with numpy and no compiler, and bakes through the reader with it.
@@ -164,13 +189,19 @@ check 'SPDX document and licences' has_licences
 check 'another name is refused' refuses_other_names
 tests/portable_outputs.sh "$PWD/build/release" "$PWD/samples" "$scratch/native" >"$scratch/native.sums"
 echo "portable: $(wc -l <"$scratch/native.sums") outputs"
+if [ -n "$tool" ]; then
+    check 'same bytes on arm64' works_under_qemu
+    echo "portable: $passed passed, $failed failed"
+    [ "$failed" -eq 0 ]
+    exit
+fi
 for release in "${releases[@]}"; do
     make_root "$release" || { echo "portable: the mirror does not have $release"; continue; }
     check "same bytes and a filtered reader on $release" works_in "$release"
 done
 check 'the action for GitHub' tests/portable_ci.sh action "$archive"
 check 'the container' tests/portable_ci.sh container "$archive"
-wheel=$(find build/portable -maxdepth 1 -name 'tex-*.whl' | head -n 1)
+wheel=$(find "$made" -maxdepth 1 -name 'tex-*.whl' | head -n 1)
 if [ -n "$wheel" ]; then
     check 'the wheel states its floor' wheel_states_its_floor "$wheel"
     check 'pip installs the wheel, which works' wheel_works "$wheel"

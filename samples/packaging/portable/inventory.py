@@ -109,7 +109,8 @@ def package(name: str, version: str, licence: str, source: str) -> dict:
 
 def main() -> None:
     reader = argparse.ArgumentParser()
-    reader.add_argument("--system", default="linux-x86_64", choices=("linux-x86_64", "windows-x86_64"))
+    reader.add_argument("--system", default="linux-x86_64",
+                        choices=("linux-x86_64", "linux-aarch64", "windows-x86_64"))
     for option in ("version", "date"):
         reader.add_argument("--" + option, required=True)
     for option in ("sources", "trace", "out"):

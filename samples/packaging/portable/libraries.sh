@@ -2,7 +2,8 @@
 # shellcheck shell=bash disable=SC2154
 # The libraries inside the portable archive for which Debian has no static archive: fetched as Debian source packages,
 # checked by apt against the release's signed index, and built into $prefix. Sourced by portable.sh, which sets $work
-# (where sources and builds lie), $prefix, $mirror and $hardening (flags of the compiler).
+# (where sources and builds lie), $prefix, $mirror, $hardening (flags of the compiler), $toolchain_options (of CMake) and
+# $tool (prefix of the names of compilers).
 
 # Of Debian 12: what the packages of Debian 12 link. Its own tar archive alone comes of OpenColorIO and pystring, since
 # Debian's changes to them concern only packaging; of OpenColorIO the next patch release, because mirrors lost 2.1.2.
@@ -49,7 +50,8 @@ with_cmake() {
     shift
     [ ! -e "$build/installed" ] || return 0
     if ! (
-        cmake -G Ninja -S "$(source_of "$name")" -B "$build" -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
+        cmake -G Ninja -S "$(source_of "$name")" -B "$build" "${toolchain_options[@]}" -DCMAKE_BUILD_TYPE=Release \
+            -DBUILD_SHARED_LIBS=OFF \
             -DCMAKE_INSTALL_PREFIX="$prefix" -DCMAKE_INSTALL_LIBDIR=lib -DCMAKE_PREFIX_PATH="$prefix" \
             -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_C_FLAGS="$hardening" -DCMAKE_CXX_FLAGS="$hardening" \
             -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON -DBUILD_TESTING=OFF "$@" &&
@@ -67,7 +69,10 @@ with_isal_makefile() {
     [ ! -e "$build/installed" ] || return 0
     rm -rf "$build"
     cp -r "$(source_of libisal)" "$build"
-    make -C "$build" -f Makefile.unx -j "$(nproc)" lib CFLAGS_="$hardening -fPIC" >"$build.log" 2>&1 ||
+    local target=()
+    if [ -n "$tool" ]; then target=(arch=aarch64 host_cpu=aarch64 CC="${tool}gcc" AR="${tool}ar"); fi
+    make -C "$build" -f Makefile.unx -j "$(nproc)" lib CFLAGS_="$hardening -fPIC" CFLAGS_aarch64="$hardening -fPIC" \
+        "${target[@]}" >"$build.log" 2>&1 ||
         { tail -n 20 "$build.log" >&2; return 1; }
     mkdir -p "$prefix/lib/pkgconfig" "$prefix/include/isa-l"
     cp "$build"/bin/isa-l.a "$prefix/lib/libisal.a"
@@ -107,9 +112,9 @@ with_pystring() {
     [ ! -e "$build/installed" ] || return 0
     mkdir -p "$build" "$prefix/include/pystring"
     # shellcheck disable=SC2086  # flags are words
-    g++ $hardening -O2 -fPIC -c "$(source_of pystring)/pystring.cpp" -o "$build/pystring.o"
+    "${tool}g++" $hardening -O2 -fPIC -c "$(source_of pystring)/pystring.cpp" -o "$build/pystring.o"
     rm -f "$prefix/lib/libpystring.a"
-    ar rcs "$prefix/lib/libpystring.a" "$build/pystring.o"
+    "${tool}ar" rcs "$prefix/lib/libpystring.a" "$build/pystring.o"
     cp "$(source_of pystring)/pystring.h" "$prefix/include/pystring"
     touch "$build/installed"
 }

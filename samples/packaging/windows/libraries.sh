@@ -12,6 +12,7 @@ bare_sources=()
 lgpl_sources=()
 hardening='-D_WIN32_WINNT=0x0A00 -D_FILE_OFFSET_BITS=64 -Wa,-muse-unaligned-vector-move -O2'
 tool=x86_64-w64-mingw32
+toolchain_options=(-DCMAKE_TOOLCHAIN_FILE="$toolchain")
 
 # with_objects NAME LIBRARY HEADERS... -- SOURCE...: compiles C sources without a build system, once.
 with_objects() {
@@ -62,9 +63,8 @@ build_windows_libraries() {
     cp -rp /usr/include/nlohmann /usr/include/toml++ "$prefix/include"
     cp -rp /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
     local root
-    local with=(-DCMAKE_TOOLCHAIN_FILE="$toolchain" -DCMAKE_BUILD_TYPE=Release)
-    with_cmake highway "${with[@]}" -DHWY_ENABLE_TESTS=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_CONTRIB=OFF
-    with_cmake fmtlib "${with[@]}" -DFMT_TEST=OFF -DFMT_DOC=OFF
+    with_cmake highway -DHWY_ENABLE_TESTS=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_CONTRIB=OFF
+    with_cmake fmtlib -DFMT_TEST=OFF -DFMT_DOC=OFF
     with_isal_for_windows
     root=$(source_of libdeflate)
     with_objects libdeflate libdeflate.a "$root/libdeflate.h" -- "$root"/lib/*.c "$root"/lib/x86/*.c
@@ -73,15 +73,15 @@ build_windows_libraries() {
     hardening+=' -DZSTD_DISABLE_ASM' with_objects libzstd libzstd.a "$root"/lib/zstd.h "$root"/lib/zstd_errors.h -- \
         "$root"/lib/common/*.c "$root"/lib/compress/*.c "$root"/lib/decompress/*.c
     pkgconfig libzstd 1.5.4 zstd
-    with_cmake libpng1.6 "${with[@]}" -DPNG_SHARED=OFF -DPNG_TESTS=OFF
-    with_cmake imath "${with[@]}" -DPYTHON=OFF
-    with_cmake openexr "${with[@]}" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF \
+    with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF
+    with_cmake imath -DPYTHON=OFF
+    with_cmake openexr -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF \
         -DOPENEXR_INSTALL_TOOLS=OFF -DBUILD_TESTING=OFF
     # Its own idea of folders takes a relative one for one of the current folder.
-    with_cmake libjpeg-turbo "${with[@]}" -DENABLE_SHARED=OFF -DWITH_TURBOJPEG=OFF \
+    with_cmake libjpeg-turbo -DENABLE_SHARED=OFF -DWITH_TURBOJPEG=OFF \
         -DCMAKE_INSTALL_LIBDIR:PATH="$prefix/lib"
-    with_cmake tiff "${with[@]}" -Djbig=OFF -Dlzma=OFF -Dwebp=OFF -Dlerc=OFF -Dtiff-tools=OFF -Dtiff-tests=OFF \
+    with_cmake tiff -Djbig=OFF -Dlzma=OFF -Dwebp=OFF -Dlerc=OFF -Dtiff-tools=OFF -Dtiff-tests=OFF \
         -Dtiff-contrib=OFF -Dtiff-docs=OFF -Dcxx=OFF
-    with_cmake onetbb "${with[@]}" -DTBB_TEST=OFF -DTBBMALLOC_BUILD=OFF -DTBB_STRICT=OFF \
+    with_cmake onetbb -DTBB_TEST=OFF -DTBBMALLOC_BUILD=OFF -DTBB_STRICT=OFF \
         -DTBB_DISABLE_HWLOC_AUTOMATIC_SEARCH=ON
 }
