@@ -55,6 +55,7 @@ if [ "$processor" = aarch64 ]; then
     mkdir -p "$work"
     arm64_root "$work/root" libc6-dev libstdc++-12-dev "${static_packages[@]}" >"$work/root.log" 2>&1 ||
         { tail -n 5 "$work/root.log" >&2; exit 1; }
+    rm -rf "$work"/root/usr/lib/aarch64-linux-gnu/cmake/expat-* # names the library by its place on a system
     export TEX_SYSROOT=$work/root TEX_PREFIX=$prefix
     export PKG_CONFIG_LIBDIR=$prefix/lib/pkgconfig:$TEX_SYSROOT/usr/lib/aarch64-linux-gnu/pkgconfig
     toolchain_options=(-DCMAKE_TOOLCHAIN_FILE="$PWD/samples/packaging/portable/aarch64.cmake")

@@ -5,7 +5,8 @@
 #
 #     libtex-VERSION.tar.gz        the sources; the same bytes wherever it is made
 #     *.deb                        the Debian packages, built from that archive, not from the clone
-#     libtex-*.tar.xz, tex-*.whl   the archive for every Linux and the wheel, by portable.sh
+#     libtex-*.tar.xz, tex-*.whl   the archives for every Linux on x86-64 and arm64, and the wheel, by portable.sh
+#     libtex-*.zip                 the archive for Windows, by windows.sh
 #     libtex-VERSION.abi           the binary interface of libtex.so, if abidw (abigail-tools) is installed
 #     libtex-VERSION.spdx.json     what it is made of (SPDX 2.3)
 #     SHA256SUMS                   of all of these
@@ -57,7 +58,9 @@ if [ "$source_only" = no ]; then
     (cd build/debian && cpack -B "$work/packages" >"$work/log") || { cat "$work/log"; exit 1; }
     mv "$work"/packages/*.deb "$work/made"
     samples/packaging/portable.sh --wheel
-    mv build/portable/libtex-*.tar.xz build/portable/tex-*.whl "$work/made"
+    samples/packaging/portable.sh --arm64
+    samples/packaging/windows.sh
+    mv build/portable*/libtex-*.tar.xz build/portable/tex-*.whl build/windows/libtex-*.zip "$work/made"
     if command -v abidw >/dev/null; then
         abidw --headers-dir libtex/include --out-file "$work/made/libtex-$version.abi" build/debian/libtex.so
     fi
