@@ -2,8 +2,8 @@
 # shellcheck shell=bash disable=SC2154
 # The libraries inside the portable archive for which Debian has no static archive: fetched as Debian source packages,
 # checked by apt against the release's signed index, and built into $prefix. Sourced by portable.sh, which sets $work
-# (where sources and builds lie), $prefix, $mirror, $hardening (flags of the compiler), $toolchain_options (of CMake) and
-# $tool (prefix of the names of compilers).
+# (where sources and builds lie), $prefix, $mirror, $hardening (flags of the compiler), $toolchain_options (of CMake)
+# and $tool (prefix of the names of compilers).
 
 # Of Debian 12: what the packages of Debian 12 link. Its own tar archive alone comes of OpenColorIO and pystring, since
 # Debian's changes to them concern only packaging; of OpenColorIO the next patch release, because mirrors lost 2.1.2.
