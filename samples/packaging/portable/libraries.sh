@@ -71,12 +71,13 @@ with_isal_makefile() {
     cp -r "$(source_of libisal)" "$build"
     local target=()
     if [ -n "$tool" ]; then target=(arch=aarch64 host_cpu=aarch64 CC="${tool}gcc" AR="${tool}ar"); fi
-    make -C "$build" -f Makefile.unx -j "$(nproc)" lib CFLAGS_="$hardening -fPIC" CFLAGS_aarch64="$hardening -fPIC" \
-        "${target[@]}" >"$build.log" 2>&1 ||
+    make -C "$build" -f Makefile.unx -j "$(nproc)" lib isa-l.h CFLAGS_="$hardening -fPIC" \
+        CFLAGS_aarch64="$hardening -fPIC" "${target[@]}" >"$build.log" 2>&1 ||
         { tail -n 20 "$build.log" >&2; return 1; }
     mkdir -p "$prefix/lib/pkgconfig" "$prefix/include/isa-l"
     cp "$build"/bin/isa-l.a "$prefix/lib/libisal.a"
     cp "$build"/include/*.h "$prefix/include/isa-l"
+    cp "$build/isa-l.h" "$prefix/include"
     printf '%s\n' "prefix=$prefix" 'Name: libisal' 'Description: ISA-L' 'Version: 2.30.0' \
         "Libs: -L\${prefix}/lib -lisal" "Cflags: -I\${prefix}/include" >"$prefix/lib/pkgconfig/libisal.pc"
     touch "$build/installed"
