@@ -143,10 +143,7 @@ OtherPlanes can_hold(Encoding encoding) {
     return {has_z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one, has_z};
 }
 
-bool can_optimise(Encoding encoding) {
-    const auto [format, swizzle] = encoding_info(encoding);
-    return format_info(format).has_blocks() && swizzle != kSwizzleXxxy;
-}
+bool can_optimise(Encoding encoding) { return format_info(encoding_info(encoding).format).has_blocks(); }
 
 float steepest_slope(Encoding encoding) {
     const EncodingInfo info = encoding_info(encoding);

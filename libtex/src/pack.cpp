@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/half_block.h"
 #include "kernels/encode.h"
 #include "rows/other_rows.h"
 #include "rows/pack_rows.h"
@@ -91,7 +92,7 @@ Result<void> encode_blocks(PlaneView<const float> x, PlaneView<const float> y, c
     const Extent extent = x.extent;
     if (extent != y.extent || extent.width < 1 || extent.height < 1)
         return bad_option("x, y: must have the same extent, at least 1x1");
-    if (!can_optimise(options.encoding)) return bad_option("encoding: must be of blocks with x and y in a half each");
+    if (!has_halves(options.encoding)) return bad_option("encoding: must be of blocks with x and y in a half each");
     if (pitch < level_bytes(encoding_info(options.encoding).format, {extent.width, 1}))
         return bad_option("pitch: too small for a row of blocks");
     for (int j = 0; j < extent.height; j += kBlockEdge, blocks += pitch)

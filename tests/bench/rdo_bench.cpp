@@ -45,9 +45,10 @@ Point measure(const tex::NormalMap& map, const tex::Texture& texture) {
     const tex::Result<tex::Image> image = tex::decode(texture, 0, {1, {}});
     if (!image) std::abort();
     const bool is_alpha = texture.format == tex::Format::bc3_unorm;
+    const bool is_astc = texture.swizzle == tex::kSwizzleXxxy;
     const bool is_signed = texture.format == tex::Format::bc5_snorm || texture.format == tex::Format::eac_rg11_snorm;
     const tex::Plane<float>& xs = image->planes[is_alpha ? 3 : 0];
-    const tex::Plane<float>& ys = image->planes[1];
+    const tex::Plane<float>& ys = image->planes[is_astc ? 3 : 1];
     std::vector<double> angles;
     Point point;
     for (int j = 0; j < map.extent().height; ++j) {

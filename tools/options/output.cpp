@@ -152,8 +152,8 @@ void OutputOptions::fill(NameFields& fields) const {
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
     const Container chosen = container_of_output(output, standard_output);
     if (zstd != 0 && !can_compress(chosen)) throw UsageError(printable(output), "--supercompress needs a KTX2 file");
-    if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm))
-        throw UsageError(printable(output), "--rdo-mean needs a DDS or KTX2 file");
+    if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm) && !can_hold(chosen, Encoding::astc_4x4))
+        throw UsageError(printable(output), "--rdo-mean needs a DDS, KTX2 or ASTC file");
     if (quality && chosen != Container::jpeg) throw UsageError(printable(output), "--quality needs a JPEG file");
     return chosen;
 }

@@ -266,7 +266,7 @@ struct OtherPlanes {
 // length of vectors whose z is stored; so blue and length exclude each other.
 [[nodiscard]] TEX_API OtherPlanes can_hold(Encoding encoding);
 
-// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): x and y have a half each.
+// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks.
 [[nodiscard]] TEX_API bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface

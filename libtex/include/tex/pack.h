@@ -69,15 +69,15 @@ inline constexpr Named<Metric> kMetricNames[] = {
 
 // Rate-distortion optimisation: blocks that compress better, at a promised angle. Games store textures compressed
 // (zstd, LZ4, deflate), so a file gets smaller if its blocks repeat bytes of earlier blocks. The encoder may replace a
-// block by one that copies the indices, and perhaps the endpoints, of blocks shortly before it. It takes the block with
-// the least D + lambda R (Sullivan and Wiegand, 1998): D is the sum of the angles of its texels, R its estimated size
-// as matches and literals of a Lempel-Ziv coder.
+// block by one that copies the indices, and perhaps the endpoints, of blocks shortly before it (ASTC: all but the
+// weights, or all), and takes that with the least D + lambda R (Sullivan and Wiegand, 1998): D is the sum of the angles
+// of its texels, R its estimated size as matches and literals of a Lempel-Ziv coder.
 //
-// It applies to dxt5nm, bc5, bc5_snorm, eac_rg11 and eac_rg11_snorm; the other encodings ignore it. A level is divided
-// into bands of whole rows of blocks, from the top: as many rows as a power of two needs to give a band of the base
-// level at least 16384 blocks, and as many in the smaller levels. Bands do not depend on each other. Memory therefore
-// holds a few of them, and the bytes are the same for every number of threads. Each band has its own lambda, the
-// greatest one found that keeps the promise.
+// It applies to encodings with blocks; the others ignore it. A level is divided into bands of whole rows of blocks,
+// from the top: as many rows as a power of two needs to give a band of the base level at least 16384 blocks, and as
+// many in the smaller levels. Bands do not depend on each other. Memory therefore holds a few of them, and the bytes
+// are the same for every number of threads. Each band has its own lambda, the greatest one found that keeps the
+// promise.
 //
 // The promise concerns the angles between the normals of the source and those of the blocks, as compare() measures
 // them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit.

@@ -179,4 +179,22 @@ void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels)
     }
 }
 
+std::optional<AstcLines> read_astc_lines(Extent block, const std::byte* bytes) {
+    constexpr int kRed = 0, kAlpha = 3;
+    const AstcBits bits = read_astc_bits(bytes);
+    if (bits.at(0, 9) == kAstcVoid) return std::nullopt;
+    const std::optional<Parts> parts = read_parts(bits, block);
+    if (!parts || parts->partitions == kMostPartitions) return std::nullopt;
+    if (parts->mode.planes == 2 && parts->second_channel != kAlpha) return std::nullopt;
+    AstcLines lines{parts->mode, parts->partitions};
+    if (parts->partitions > 1) astc_partitions(block, parts->partitions, parts->partition_index, lines.partition);
+    for (int p = 0; p < parts->partitions; ++p) {
+        for (int e = 0; e < 2; ++e) {
+            lines.ends[p][0][e] = parts->endpoints[p].color[e][kRed];
+            lines.ends[p][1][e] = parts->endpoints[p].color[e][kAlpha];
+        }
+    }
+    return lines;
+}
+
 }  // namespace tex::inline v1

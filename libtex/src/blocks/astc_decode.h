@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include <tex/format.h>
 
@@ -35,5 +36,17 @@ struct AstcTexels {
 // and partitions with endpoints of high dynamic range become magenta (1, 0, 1, 1), as in libastcenc's profile for low
 // dynamic range.
 void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels);
+
+// The lines on which the texels of a block lie, between two endpoints for each partition.
+struct AstcLines {
+    AstcMode mode;
+    int partitions = 1;                           // at most 3
+    std::uint8_t partition[kAstcMostTexels] = {};  // of each texel
+    int ends[3][2][2] = {};                       // by partition and channel (R, A), from 0 to 255
+};
+
+// Those of a block as encode_astc() writes it: of two planes, the second one is that of alpha. None of a block of one
+// colour.
+[[nodiscard]] std::optional<AstcLines> read_astc_lines(Extent block, const std::byte* bytes);
 
 }  // namespace tex::inline v1

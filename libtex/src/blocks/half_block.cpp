@@ -164,6 +164,11 @@ void eac_variants(Variants& to, Copied copied, bool is_signed, HalfLine line) {
 
 }  // namespace
 
+bool has_halves(Encoding encoding) {
+    const auto [format, swizzle] = encoding_info(encoding);
+    return format_info(format).has_blocks() && swizzle != kSwizzleXxxy;
+}
+
 HalfKind half_kind(Encoding encoding, int half) {
     switch (encoding) {
         case Encoding::dxt5nm: return half == 0 ? HalfKind::bc4_unorm : HalfKind::green;

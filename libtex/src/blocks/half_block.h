@@ -23,7 +23,10 @@ inline constexpr int kHalfBytes = 8;
 
 enum class HalfKind { bc4_unorm, bc4_snorm, green, eac_unorm, eac_snorm };
 
-// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: can_optimise(encoding).
+// Whether x and y have a half each in the blocks of an encoding. In ASTC, they share what a block has.
+bool has_halves(Encoding encoding);
+
+// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: has_halves(encoding).
 HalfKind half_kind(Encoding encoding, int half);
 
 // Decodes a half into components in [-1, 1], as unpack() does, and in the same order.

@@ -82,8 +82,10 @@ void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, in
     }
 }
 
-// Packs rows of blocks, `count` rows of texels from row j.
-void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count, std::byte* out) {
+// Packs rows of blocks, `count` rows of texels from row j. For the other arguments, see pack_rows().
+void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, std::byte* out, int band_rows,
+               RdoTally* tally, std::byte* plain) {
+    const Format format = encoding_info(options.encoding).format;
     const int width = rows.extent().width;
     std::vector<float> xy(2 * size(width) * size(count));
     float* to = xy.data();
@@ -97,7 +99,14 @@ void pack_astc(const Rows& rows, Format format, Effort effort, int j, int count,
             *to++ = y.negate ? -y.values[i] : y.values[i];
         }
     }
-    encode_astc(format, effort, xy.data(), {width, count}, out);
+    encode_astc(format, options.effort, xy.data(), {width, count}, out);
+    if (!is_optimised(options)) return;
+    if (plain != nullptr) std::memcpy(plain, out, level_bytes(format, {width, count}));
+    for (int k = 0; k < count; k += band_rows) {
+        const float* const band = xy.data() + 2 * size(width) * size(k);
+        optimise_astc_band(band, {width, std::min(band_rows, count - k)}, options,
+                           out + level_bytes(format, {width, k}), tally);
+    }
 }
 
 }  // namespace
@@ -146,7 +155,9 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;
         if (is_astc(format)) {
-            return pack_astc(rows, format, options.effort, begin, end - begin, out + size(begin / block) * pitch);
+            const std::size_t offset = size(begin / block) * pitch;
+            return pack_astc(rows, options, begin, end - begin, out + offset, band_rows, tally,
+                             plain == nullptr ? nullptr : plain + offset);
         }
         for (int j = begin; j < end; j += block) encode_blocks(rows.blocks(j), options, out + size(j / block) * pitch);
         if (!is_optimised(options)) return;

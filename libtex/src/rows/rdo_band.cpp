@@ -17,19 +17,12 @@ namespace {
 constexpr std::ptrdiff_t kBandBlockBytes = 16;
 constexpr double kDegreesOfRadian = 180.0 / math::kPi;
 
-double degrees_of(float chord) {
-    const double half = std::min(1.0, 0.5 * static_cast<double>(chord));
-    return half >= 1.0 ? 180.0 : 2.0 * kDegreesOfRadian * math::atan(half / std::sqrt(1.0 - half * half));
-}
-
-// The longest chord whose angle, as degrees_of() computes it, is not above `degrees`.
+// The longest chord whose angle, as degrees_of_chord() computes it, is not above `degrees`.
 float chord_of(float degrees) {
     constexpr double kJustBelow = 1.0 - 1e-6;
     if (degrees >= 180.0f) return 2.0f;
     return static_cast<float>(2.0 * math::sin(0.5 * static_cast<double>(degrees) / kDegreesOfRadian) * kJustBelow);
 }
-
-float within_one(float n) { return std::fmin(std::fmax(n, -1.0f), 1.0f); }
 
 // The chords between the texels of a block and what 16 bytes decode to.
 void chords_of(const RdoBand& band, std::size_t index, const std::byte* bytes, float chords[16]) {
@@ -48,13 +41,10 @@ void add_block(const BlockRow& row, int index, RdoBand& band) {
         const int i = kBlockEdge * index + k % kBlockEdge;
         const int j = k / kBlockEdge;
         const int column = std::min(i, row.width - 1);
-        const float x = within_one(row.x[j][column]);
-        const float y = within_one(row.y[j][column]);
-        const float flat = x * x + y * y;
-        const float factor = 1.0f / std::sqrt(std::max(1.0f, flat));
-        block.x[k] = factor * x;
-        block.y[k] = factor * (row.negate_y ? -y : y);
-        block.z[k] = std::sqrt(1.0f - std::min(1.0f, flat));
+        const RdoNormal normal = rdo_normal(row.x[j][column], row.y[j][column]);
+        block.x[k] = normal.x;
+        block.y[k] = row.negate_y ? -normal.y : normal.y;
+        block.z[k] = normal.z;
         block.inside[k] = i < row.width && j < row.height ? 1.0f : 0.0f;
         band.texels += static_cast<double>(block.inside[k]);
     }
@@ -90,13 +80,33 @@ void measure_improved(RdoBand& band) {
 
 }  // namespace
 
+double degrees_of_chord(float chord) {
+    const double half = std::min(1.0, 0.5 * static_cast<double>(chord));
+    return half >= 1.0 ? 180.0 : 2.0 * kDegreesOfRadian * math::atan(half / std::sqrt(1.0 - half * half));
+}
+
+float longest_chord(const RdoOptions& options, double mean) {
+    const auto usual =
+        static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.mean))));
+    return chord_of(options.max > 0.0f ? options.max : usual);
+}
+
+RdoNormal rdo_normal(float x, float y) {
+    const auto within_one = [](float n) { return std::fmin(std::fmax(n, -1.0f), 1.0f); };
+    x = within_one(x);
+    y = within_one(y);
+    const float flat = x * x + y * y;
+    const float factor = 1.0f / std::sqrt(std::max(1.0f, flat));
+    return {factor * x, factor * y, std::sqrt(1.0f - std::min(1.0f, flat))};
+}
+
 RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes) {
     float chords[16];
     chords_of(band, index, bytes, chords);
     RdoAngles angles;
     for (std::size_t k = 0; k < 16; ++k) {
         if (band.blocks[index].inside[k] == 0.0f) continue;
-        const double angle = degrees_of(chords[k]);
+        const double angle = degrees_of_chord(chords[k]);
         angles.sum += angle;
         if (chords[k] > band.plain_chords[16 * index + k]) angles.most_raised = std::max(angles.most_raised, angle);
     }
@@ -106,7 +116,9 @@ RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* by
 RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                   const std::byte* blocks) {
     constexpr int kReach = 2;  // farther steps gain little
-    RdoBand band{options.encoding, options.rdo.window, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}};
+    RdoBand band;
+    band.encoding = options.encoding;
+    band.window = options.rdo.window;
     for (int r = 0; r < count; ++r) {
         const BlockRow row = rows(r);
         const int across = blocks_across(row.width);
@@ -123,10 +135,7 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const
         chords_of(band, index, bytes, band.plain_chords.data() + 16 * index);
         band.plain_sum += rdo_angles(band, index, bytes).sum;
     }
-    const double mean = band.plain_sum / band.texels;
-    const auto usual =
-        static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.rdo.mean))));
-    set_limits(chord_of(options.rdo.max > 0.0f ? options.rdo.max : usual), band);
+    set_limits(longest_chord(options.rdo, band.plain_sum / band.texels), band);
     measure_improved(band);
     return band;
 }

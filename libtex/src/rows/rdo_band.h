@@ -10,6 +10,7 @@
 #include <tex/pack.h>
 
 #include "kernels/encode.h"
+#include "rows/rdo_runs.h"
 
 namespace tex::inline v1 {
 
@@ -26,22 +27,30 @@ struct RdoAngles {
     double most_raised = 0.0;  // degrees: the greatest of those that are greater than without optimisation
 };
 
-struct RdoBand {
-    Encoding encoding;
-    int window;  // bytes
+struct RdoBand : RdoBlocks {
+    Encoding encoding = Encoding::bc5;
+    int window = 0;  // bytes
     std::vector<RdoBlock> blocks;
-    std::vector<std::byte> plain;         // 16 bytes a block
     std::vector<std::byte> improved;      // the same or better literals
     std::vector<float> plain_chords;      // 16 a block
-    double texels = 0.0;                  // in the level
-    double plain_sum = 0.0;               // the sum of the angles of `plain`, in degrees
-    double improved_sum = 0.0;            // the same of `improved`
     std::vector<double> improved_angles;  // the sum of the angles of each block of `improved`
 };
 
 // Reads `count` rows of blocks, which encode_blocks() has written one after the other. Throws std::bad_alloc.
 RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                   const std::byte* blocks);
+
+// The angle of a chord between unit vectors, in degrees.
+double degrees_of_chord(float chord);
+
+// The longest chord that a texel of a band may get, whose mean angle without optimisation is `mean`.
+float longest_chord(const RdoOptions& options, double mean);
+
+// A normal with x and y within [-1, 1], made unit.
+struct RdoNormal {
+    float x, y, z;
+};
+RdoNormal rdo_normal(float x, float y);
 
 // The angles of 16 bytes as block `index`.
 RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes);

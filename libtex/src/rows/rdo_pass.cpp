@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <utility>
 
 #include "blocks/half_block.h"
 #include "kernels/chords.h"
@@ -27,18 +26,16 @@ struct Choice {
     float bits;  // with those of the match
 };
 
-class Pass {
+class HalvesPass final : public RdoRuns {
 public:
-    Pass(const RdoBand& band, const ByteCounts& literals);
-    RdoResult run(RdoBudget& budget, bool may_stop);
-    RdoSample sample(float lambda, int stride);
+    HalvesPass(const RdoBand& band, const ByteCounts& literals);
 
 private:
-    void set_lambda(float lambda);
-    void keep_block(int block);
+    void set_lambda(float lambda) override;
+    void keep_block(int block) override;
+    void choose_block(int block, const RdoBudget* budget) override;
     void start(int block);
     void add_near(int half, int distance);
-    void choose_block(int block, const RdoBudget* budget);
     void find_firsts(int block);
     float choose(int half, const Choice& other, const RdoMatches& matches, Choice& best);
     [[nodiscard]] Choice take(const RdoCandidates& from, int index, const RdoMatches& matches) const;
@@ -60,15 +57,13 @@ private:
     Choice plain_[2];
     std::vector<Choice> firsts_;  // what x may become
     RdoMatches matches_;
-    RdoResult result_;
 };
 
-Pass::Pass(const RdoBand& band, const ByteCounts& literals)
-    : band_(band), literal_bits_(literal_bits(literals)), sources_(band.encoding, band.window, band.blocks.size()) {
-    result_.blocks.resize(band.plain.size());
-}
+HalvesPass::HalvesPass(const RdoBand& band, const ByteCounts& literals)
+    : RdoRuns(band.count()), band_(band), literal_bits_(literal_bits(literals)),
+      sources_(band.encoding, band.window, band.count()) {}
 
-void Pass::set_lambda(float lambda) {
+void HalvesPass::set_lambda(float lambda) {
     lambda_ = lambda;
     sources_.set_lambda(lambda);
 }
@@ -85,7 +80,7 @@ float angle_scale(const RdoBlock& texels) {
 }
 
 // Finds candidates for both halves that do not depend on each other.
-void Pass::start(int block) {
+void HalvesPass::start(int block) {
     const RdoBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
     RdoSearcher searcher{block, {texels.x, texels.y}, {}, angle_scale(texels), {}};
     for (int to = 0; to < 2; ++to) {
@@ -116,18 +111,18 @@ void Pass::start(int block) {
 }
 
 // Adds copies at a distance that a coder writes in a few bits.
-void Pass::add_near(int half, int distance) {
+void HalvesPass::add_near(int half, int distance) {
     const int at = half - distance / kHalfBytes;
     const bool is_earlier = at >= 0 && at / 2 < half / 2;
     if (distance % kHalfBytes != 0 || !is_earlier || sources_.kind(at) != sources_.kind(half)) return;
     for (const Copied copied : kAllCopied) candidates_[half % 2].add_copies(written(at), distance, copied);
 }
 
-float Pass::match_price(const RdoCandidate& candidate, const RdoMatches& matches) const {
+float HalvesPass::match_price(const RdoCandidate& candidate, const RdoMatches& matches) const {
     return candidate.distance == 0 ? 0.0f : matches.bits(candidate.distance, candidate.literals == 0);
 }
 
-Choice Pass::take(const RdoCandidates& from, int index, const RdoMatches& matches) const {
+Choice HalvesPass::take(const RdoCandidates& from, int index, const RdoMatches& matches) const {
     Choice choice;
     choice.candidate = from[index];
     from.copy_values(index, choice.values);
@@ -137,7 +132,7 @@ Choice Pass::take(const RdoCandidates& from, int index, const RdoMatches& matche
 
 // Finds the best candidate beside the other half. Returns its cost: the sum of angles and the bits of this half.
 // kTooLong: no candidate keeps the limits.
-float Pass::choose(int half, const Choice& other, const RdoMatches& matches, Choice& best) {
+float HalvesPass::choose(int half, const Choice& other, const RdoMatches& matches, Choice& best) {
     const RdoBlock& texels = band_.blocks[static_cast<std::size_t>(half / 2)];
     const RdoCandidates& candidates = candidates_[half % 2];
     const bool is_x = half % 2 == 0;
@@ -160,7 +155,7 @@ float Pass::choose(int half, const Choice& other, const RdoMatches& matches, Cho
 }
 
 // The best x beside the plain y, and those of the best pairs.
-void Pass::find_firsts(int block) {
+void HalvesPass::find_firsts(int block) {
     const int x = 2 * block;
     firsts_.clear();
     Choice best;
@@ -173,7 +168,7 @@ void Pass::find_firsts(int block) {
     }
 }
 
-void Pass::choose_block(int block, const RdoBudget* budget) {
+void HalvesPass::choose_block(int block, const RdoBudget* budget) {
     start(block);
     find_firsts(block);
     const int y = 2 * block + 1;
@@ -211,7 +206,7 @@ void Pass::choose_block(int block, const RdoBudget* budget) {
 }
 
 // Writes the improved literals.
-void Pass::keep_block(int block) {
+void HalvesPass::keep_block(int block) {
     for (int half = 2 * block; half < 2 * block + 2; ++half) {
         Choice kept;
         std::memcpy(kept.candidate.half, band_.improved.data() + std::ptrdiff_t{kHalfBytes} * half, kHalfBytes);
@@ -221,7 +216,7 @@ void Pass::keep_block(int block) {
     }
 }
 
-void Pass::write(int half, const Choice& choice) {
+void HalvesPass::write(int half, const Choice& choice) {
     const RdoCandidate& candidate = choice.candidate;
     std::memcpy(result_.blocks.data() + std::ptrdiff_t{kHalfBytes} * half, candidate.half, kHalfBytes);
     for (int k = 0; k < candidate.literals; ++k) ++result_.literals[std::to_integer<std::size_t>(candidate.half[k])];
@@ -229,46 +224,10 @@ void Pass::write(int half, const Choice& choice) {
     sources_.add(half, candidate.half);
 }
 
-RdoResult Pass::run(RdoBudget& budget, bool may_stop) {
-    for (int block = 0; block < static_cast<int>(band_.blocks.size()); ++block) {
-        if (block % kRdoRun == 0) {
-            set_lambda(budget.next(result_.growth));
-            if (may_stop && budget.has_wandered()) return std::move(result_);
-        }
-        choose_block(block, &budget);
-    }
-    result_.is_whole = true;
-    return std::move(result_);
-}
-
-RdoSample Pass::sample(float lambda, int stride) {
-    set_lambda(lambda);
-    const int count = static_cast<int>(band_.blocks.size());
-    RdoSample sample;
-    for (int first = 0; first < count; first += kRdoRun) {
-        const int end = std::min(count, first + kRdoRun);
-        const double before = result_.growth;
-        const ByteCounts literals = result_.literals;
-        const bool is_taken = is_sampled(first / kRdoRun, stride);
-        for (int block = first; block < end; ++block) is_taken ? choose_block(block, nullptr) : keep_block(block);
-        if (is_taken) {
-            sample.growths.push_back(result_.growth - before);
-        } else {
-            result_.literals = literals;  // what optimised runs write is another choice of bytes
-        }
-    }
-    sample.literals = result_.literals;
-    return sample;
-}
-
 }  // namespace
 
-RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals) {
-    return Pass(band, literals).run(budget, may_stop);
-}
-
-RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals) {
-    return Pass(band, literals).sample(lambda, stride);
+std::unique_ptr<RdoRuns> rdo_pass(const RdoBand& band, const ByteCounts& literals) {
+    return std::make_unique<HalvesPass>(band, literals);
 }
 
 }  // namespace tex::inline v1

@@ -15,35 +15,15 @@
 
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
-#include <tex/pack.h>
+#include <memory>
 
 #include "rows/rdo_band.h"
-#include "rows/rdo_budget.h"
 #include "rows/rdo_rate.h"
+#include "rows/rdo_runs.h"
 
 namespace tex::inline v1 {
 
-struct RdoResult {
-    std::vector<std::byte> blocks;
-    ByteCounts literals{};
-    double growth = 0.0;       // of the sum of angles, in degrees, from that of the improved literals
-    double most_raised = 0.0;  // see RdoAngles
-    bool is_whole = false;     // unless the pass stopped early
-};
-
-// Optimises all blocks. Those for which the budget has nothing left become improved literals. `literals` are those of
-// the pass before. If `may_stop` is set, it returns as soon as the budget has wandered. Throws std::bad_alloc.
-RdoResult rdo_pass(const RdoBand& band, RdoBudget& budget, bool may_stop, const ByteCounts& literals);
-
-// Optimises one of `stride` runs of blocks, at one lambda, in degrees for each bit; the others become improved
-// literals.
-struct RdoSample {
-    std::vector<double> growths;  // one for each sampled run
-    ByteCounts literals{};
-};
-RdoSample rdo_sample(const RdoBand& band, float lambda, int stride, const ByteCounts& literals);
+// A pass. What is kept are the improved literals. `literals` are those of the pass before. Throws std::bad_alloc.
+[[nodiscard]] std::unique_ptr<RdoRuns> rdo_pass(const RdoBand& band, const ByteCounts& literals);
 
 }  // namespace tex::inline v1

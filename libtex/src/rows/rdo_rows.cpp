@@ -8,6 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "blocks/half_block.h"
+#include "rows/rdo_astc_band.h"
+#include "rows/rdo_astc_pass.h"
 #include "rows/rdo_band.h"
 #include "rows/rdo_budget.h"
 #include "rows/rdo_pass.h"
@@ -36,19 +39,20 @@ std::vector<double> spread_runs(const std::vector<double>& sampled, int stride, 
 }
 
 // Finds by samples how to spend `most` degrees more than the improved literals have.
-RdoPlan plan_of(const RdoBand& band, double most) {
-    const int runs = rdo_runs(band.blocks.size());
+RdoPlan plan_of(const RdoBlocks& band, const RdoMakeRuns& make, double most) {
+    const int runs = rdo_runs(band.count());
     const int stride = rdo_sample_stride(runs);
     std::size_t sampled = 0;
     for (int run = 0; run < runs; ++run) {
         const std::size_t first = std::size_t{kRdoRun} * static_cast<std::size_t>(run);
-        if (is_sampled(run, stride)) sampled += std::min<std::size_t>(kRdoRun, band.blocks.size() - first);
+        if (is_sampled(run, stride)) sampled += std::min<std::size_t>(kRdoRun, band.count() - first);
     }
-    const double part = static_cast<double>(sampled) / static_cast<double>(band.blocks.size());
+    const double part = static_cast<double>(sampled) / static_cast<double>(band.count());
     // A good first lambda: the mean angle that is allowed, shared among the bits that are usually saved.
     const double allowed = most / band.texels;
     const double mean = band.improved_sum / band.texels;
-    RdoLambdaSearch search(part * most, 0.6 * std::sqrt(allowed * (mean + 0.1 * allowed)));
+    const double texels = static_cast<double>(band.block_texels) / 16.0;
+    RdoLambdaSearch search(part * most, texels * 0.6 * std::sqrt(allowed * (mean + 0.1 * allowed)));
     ByteCounts plain{};
     for (const std::byte byte : band.plain) ++plain[std::to_integer<std::size_t>(byte)];
     RdoPlan plan{
@@ -57,7 +61,7 @@ RdoPlan plan_of(const RdoBand& band, double most) {
     constexpr int kMostSamples = 5;
     for (int k = 0; k < kMostSamples && !search.is_done(); ++k) {
         const float lambda = search.lambda();
-        const RdoSample sample = rdo_sample(band, lambda, stride, plan.literals);
+        const RdoSample sample = make(plan.literals)->sample(lambda, stride);
         double growth = 0.0;
         for (const double one : sample.growths) growth += one;
         if (search.add(growth))
@@ -76,22 +80,22 @@ struct Optimised {
 // Whether what zstd -19 makes of the result is smaller than what it makes of the plain blocks. Where a fast level saves
 // much, so does -19; otherwise it takes a try: the rate is an estimate, and where copies are dear, what it saves may be
 // less than nothing.
-bool is_gain(const RdoBand& band, const Optimised& best, std::size_t plain_size) {
+bool is_gain(const RdoBlocks& band, const Optimised& best, std::size_t plain_size) {
     if (!best.result.is_whole) return false;
     if (static_cast<double>(best.size) < 0.95 * static_cast<double>(plain_size)) return true;
     return zstd_size(best.result.blocks) < zstd_size(band.plain);
 }
 
 // Spends `most` degrees. The result is not whole if nothing is gained.
-Optimised optimise(const RdoBand& band, double most) {
-    RdoPlan plan = plan_of(band, most);
+Optimised optimise(const RdoBlocks& band, const RdoMakeRuns& make, double most) {
+    RdoPlan plan = plan_of(band, make, most);
     constexpr int kFastLevel = 5;
     const std::size_t plain_size = zstd_size(band.plain, kFastLevel);
     Optimised best{{}, plain_size + plain_size / 50};
     constexpr int kMostPasses = 3;
     for (int pass = 1; pass <= kMostPasses; ++pass) {
         RdoBudget budget(plan.growth, most);
-        RdoResult result = rdo_pass(band, budget, pass == 1, plan.literals);
+        RdoResult result = make(plan.literals)->run(budget, pass == 1);
         const bool has_wandered = budget.has_wandered();
         plan = {budget.better_plan(result.growth), result.literals};
         if (result.is_whole) {
@@ -103,6 +107,22 @@ Optimised optimise(const RdoBand& band, double most) {
     }
     if (!is_gain(band, best, plain_size)) best.result.is_whole = false;
     return best;
+}
+
+void optimise_blocks(const RdoBlocks& band, const RdoMakeRuns& make, const PackOptions& options, std::byte* blocks,
+                     RdoTally* tally) {
+    const double most = static_cast<double>(options.rdo.mean) * band.texels;
+    const Optimised best = optimise(band, make, most + band.plain_sum - band.improved_sum);
+    double sum = band.plain_sum;
+    double most_raised = 0.0;
+    if (best.result.is_whole) {
+        std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
+        sum = band.improved_sum + best.result.growth;
+        most_raised = best.result.most_raised;
+    }
+    if (tally == nullptr) return;
+    tally->add({static_cast<std::int64_t>(band.texels), std::llround(kMillionths * band.plain_sum),
+                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
 }
 
 }  // namespace
@@ -142,29 +162,27 @@ bool is_optimised(const PackOptions& options) { return can_optimise(options.enco
 
 int rdo_band_rows(const PackOptions& options, int base_width) {
     constexpr std::int64_t kBandBlocks = 16384;
+    const Extent block = format_info(encoding_info(options.encoding).format).block;
+    if (!is_optimised(options)) return kBlockEdge;
     int rows = 1;
-    if (is_optimised(options)) {
-        while (std::int64_t{rows} * blocks_across(base_width) < kBandBlocks) rows *= 2;
-    }
-    return kBlockEdge * rows;
+    while (std::int64_t{rows} * blocks_across(base_width, block.width) < kBandBlocks) rows *= 2;
+    return block.height * rows;
 }
 
 void optimise_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
                    std::byte* blocks, RdoTally* tally) {
-    assert(is_optimised(options));
+    assert(is_optimised(options) && has_halves(options.encoding));
     const RdoBand band = read_band(rows, count, options, blocks);
-    const double most = static_cast<double>(options.rdo.mean) * band.texels;
-    const Optimised best = optimise(band, most + band.plain_sum - band.improved_sum);
-    double sum = band.plain_sum;
-    double most_raised = 0.0;
-    if (best.result.is_whole) {
-        std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
-        sum = band.improved_sum + best.result.growth;
-        most_raised = best.result.most_raised;
-    }
-    if (tally == nullptr) return;
-    tally->add({static_cast<std::int64_t>(band.texels), std::llround(kMillionths * band.plain_sum),
-                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
+    optimise_blocks(
+        band, [&band](const ByteCounts& literals) { return rdo_pass(band, literals); }, options, blocks, tally);
+}
+
+void optimise_astc_band(const float* xy, Extent extent, const PackOptions& options, std::byte* blocks,
+                        RdoTally* tally) {
+    assert(is_optimised(options) && !has_halves(options.encoding));
+    const RdoAstcBand band = read_astc_band(xy, extent, options, blocks);
+    optimise_blocks(
+        band, [&band](const ByteCounts& literals) { return rdo_astc_pass(band, literals); }, options, blocks, tally);
 }
 
 }  // namespace tex::inline v1

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rows/rdo_astc_band.h"
+
+#include <algorithm>
+
+#include "blocks/astc_decode.h"
+#include "blocks/extent.h"
+#include "kernels/chords.h"
+
+namespace tex::inline v1 {
+namespace {
+
+void astc_chords(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded, float chords[kAstcMostPlanned]) {
+    for (int k = 0; k < texels; k += 16) {
+        const float* const normals[3] = {block.x + k, block.y + k, block.z + k};
+        block_chords(normals, decoded.x + k, decoded.y + k, chords + k);
+    }
+}
+
+// The block at a column and a row of blocks.
+RdoAstcBlock read_astc_block(const float* xy, Extent extent, Extent size, int column, int row) {
+    RdoAstcBlock block{};
+    std::fill_n(block.most, kAstcMostPlanned, kTooLong);
+    for (int k = 0; k < size.width * size.height; ++k) {
+        const int i = size.width * column + k % size.width, j = size.height * row + k / size.width;
+        const int from = std::min(j, extent.height - 1) * extent.width + std::min(i, extent.width - 1);
+        const float* const texel = xy + 2 * static_cast<std::size_t>(from);
+        const RdoNormal normal = rdo_normal(texel[0], texel[1]);
+        block.x[k] = normal.x;
+        block.y[k] = normal.y;
+        block.z[k] = normal.z;
+        block.inside[k] = i < extent.width && j < extent.height ? 1.0f : 0.0f;
+    }
+    return block;
+}
+
+}  // namespace
+
+void decode_astc_normals(Extent block, const std::byte* bytes, RdoAstcTexels& texels) {
+    AstcTexels to;
+    to.channel[0] = texels.x;
+    to.channel[3] = texels.y;
+    decode_astc(block, bytes, to);
+    for (int k = 0; k < block.width * block.height; ++k) {
+        texels.x[k] = 2.0f * texels.x[k] - 1.0f;
+        texels.y[k] = 2.0f * texels.y[k] - 1.0f;
+    }
+}
+
+float astc_chord_sum(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded) {
+    float chords[kAstcMostPlanned];
+    astc_chords(block, texels, decoded, chords);
+    float sum = 0.0f;
+    for (int k = 0; k < texels; ++k) {
+        if (chords[k] > block.most[k]) return kTooLong;
+        sum += block.inside[k] * chords[k];
+    }
+    return sum;
+}
+
+RdoAngles astc_angles(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded) {
+    float chords[kAstcMostPlanned];
+    astc_chords(block, texels, decoded, chords);
+    RdoAngles angles;
+    for (int k = 0; k < texels; ++k) {
+        if (block.inside[k] == 0.0f) continue;
+        const double angle = degrees_of_chord(chords[k]);
+        angles.sum += angle;
+        if (chords[k] > block.plain[k]) angles.most_raised = std::max(angles.most_raised, angle);
+    }
+    return angles;
+}
+
+RdoAstcBand read_astc_band(const float* xy, Extent extent, const PackOptions& options, const std::byte* blocks) {
+    RdoAstcBand band;
+    band.block = format_info(encoding_info(options.encoding).format).block;
+    band.block_texels = band.block.width * band.block.height;
+    band.window = options.rdo.window;
+    const int across = blocks_across(extent.width, band.block.width);
+    const int count = across * blocks_across(extent.height, band.block.height);
+    band.plain.assign(blocks, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(count));
+    band.blocks.reserve(static_cast<std::size_t>(count));
+    for (int n = 0; n < count; ++n) {
+        RdoAstcBlock& block =
+            band.blocks.emplace_back(read_astc_block(xy, extent, band.block, n % across, n / across));
+        RdoAstcTexels decoded;
+        decode_astc_normals(band.block, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(n), decoded);
+        astc_chords(block, band.block_texels, decoded, block.plain);
+        block.plain_sum = astc_angles(block, band.block_texels, decoded).sum;
+        band.plain_sum += block.plain_sum;
+    }
+    band.texels = static_cast<double>(extent.width) * extent.height;
+    band.improved_sum = band.plain_sum;
+    const float longest = longest_chord(options.rdo, band.plain_sum / band.texels);
+    for (RdoAstcBlock& block : band.blocks) {
+        for (int k = 0; k < band.block_texels; ++k) {
+            if (block.inside[k] != 0.0f) block.most[k] = std::max(longest, block.plain[k]);
+        }
+    }
+    return band;
+}
+
+}  // namespace tex::inline v1
