@@ -61,6 +61,18 @@ TEST_F(RdoOption, FilesAreSmallerAndTheReportShowsThePromise) {
     EXPECT_EQ(shell(scratch_, "check-normals small.ktx2").code, 0);
 }
 
+TEST_F(RdoOption, AstcFilesCompressBetter) {
+    const std::string pack = "pack-normals n.exr --format astc-6x6 --effort fast --mips none --json -o ";
+    const auto plain = nlohmann::json::parse(does(pack + "plain.ktx2 --supercompress zstd:19"));
+    const auto small = nlohmann::json::parse(does(pack + "small.ktx2 --supercompress zstd:19 --rdo-mean 0.5"));
+    EXPECT_LT(small["bytes"], plain["bytes"]);
+    EXPECT_LE(small["rdo"]["most_growth"], 0.5);
+    does(pack + "plain.astc");
+    does(pack + "small.astc --rdo-mean 0.5");
+    EXPECT_EQ(scratch_.read("small.astc").size(), scratch_.read("plain.astc").size());
+    EXPECT_NE(scratch_.read("small.astc"), scratch_.read("plain.astc"));
+}
+
 TEST_F(RdoOption, BytesAreTheSameForAllThreads) {
     scratch_.add_sample("waves.png", "w.png");
     does("bake-normals w.png -o w.exr --mips none");
