@@ -61,8 +61,7 @@ TEST(RdoAstc, KeepsThePromiseAndReportsIt) {
             const Result<PackedTexture> texture = pack(chain, options, {1, {}});
             ASSERT_TRUE(texture);
             const RdoReport& report = texture->rdo;
-            const std::vector<double> angles =
-                astc_angles_of(chain.levels[0], texture->levels[0].bytes, options);
+            const std::vector<double> angles = astc_angles_of(chain.levels[0], texture->levels[0].bytes, options);
             EXPECT_LE(mean_of(angles), mean_of(plain) + 0.5 + rounding);
             double most_raised = 0.0;
             for (std::size_t k = 0; k < angles.size(); ++k) {

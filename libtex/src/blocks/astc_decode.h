@@ -40,9 +40,9 @@ void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels)
 // The lines on which the texels of a block lie, between two endpoints for each partition.
 struct AstcLines {
     AstcMode mode;
-    int partitions = 1;                           // at most 3
+    int partitions = 1;                            // at most 3
     std::uint8_t partition[kAstcMostTexels] = {};  // of each texel
-    int ends[3][2][2] = {};                       // by partition and channel (R, A), from 0 to 255
+    int ends[3][2][2] = {};                        // by partition and channel (R, A), from 0 to 255
 };
 
 // Those of a block as encode_astc() writes it: of two planes, the second one is that of alpha. None of a block of one

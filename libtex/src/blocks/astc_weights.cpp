@@ -55,8 +55,7 @@ void fit_grid(const AstcGrid& grid, const AstcValues& weights, IdealWeights& ide
         fitted[w] = sum * grid.over_sum[w];
     }
     for (int k = 0; k < grid.texels; ++k) {
-        for (int s = 0; s < 4; ++s)
-            ideal.weight[k] -= grid.infill[k][s] * (1.0f / 16.0f) * fitted[grid.around[k][s]];
+        for (int s = 0; s < 4; ++s) ideal.weight[k] -= grid.infill[k][s] * (1.0f / 16.0f) * fitted[grid.around[k][s]];
     }
     constexpr int kSweeps = 3;
     for (int sweep = 0; sweep < kSweeps; ++sweep) {

@@ -88,8 +88,8 @@ struct AstcPartShape {
     alignas(64) float line[3][kAstcMostPlanned * kAstcLanes];  // the first one, for each partition; 0 outside
     FloatVec line_range, ranges;    // the mean over the texels of the squared ranges of their partitions
     FloatVec narrow, narrow_share;  // bits of the partitions that are narrow; how many of all that is
-    FloatVec
-        coarse[kAstcCoarseLevels];  // what 2, 3 ... levels leave along the lines, of what they leave of even spreads
+    // What 2, 3 ... levels leave along the lines, as shares of what they leave of even spreads.
+    FloatVec coarse[kAstcCoarseLevels];
 };
 
 struct AstcSpan {

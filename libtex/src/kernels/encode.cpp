@@ -15,6 +15,7 @@
 #include "kernels/clusters.h"
 #include "kernels/fit.h"
 #include "kernels/green_search.h"
+#include "kernels/six_values.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -73,20 +74,16 @@ bool may_have_six_values(const BlockTexels& texels, int top) {
     return true;
 }
 
-// Searches for the optimum of the blocks from `first` on and, if `six_values` is set, of earlier blocks that may have
-// had 6 values.
+// Searches for the optimum of the blocks from `first` on.
 template <class Endpoints, class Search, class Write>
-void search_blocks(const Channel& channel, int first, bool six_values, int top, Search search, Write write,
-                   std::byte* blocks) {
+void search_blocks(const Channel& channel, int first, int top, Search search, Write write, std::byte* blocks) {
     BlockTexels texels[kRun];
     ClusterBounds bounds[kRun];
     Endpoints endpoints[kRun];
     int at[kRun];
     int count = 0;
-    for (int block = six_values ? 0 : first; block < channel.blocks(); ++block) {
-        if (block < first && !channel.reaches_extremes(block)) continue;
+    for (int block = first; block < channel.blocks(); ++block) {
         texels[count] = channel.texels(block, top);
-        if (block < first && !may_have_six_values(texels[count], top)) continue;
         at[count++] = block;
     }
     if (count == 0) return;
@@ -95,9 +92,23 @@ void search_blocks(const Channel& channel, int first, bool six_values, int top, 
     for (int k = 0; k < count; ++k) write(texels[k], endpoints[k], blocks + 16 * std::ptrdiff_t{at[k]});
 }
 
-void search_bc4(const Channel& channel, Bc4Codes codes, int first, bool six_values, std::byte* blocks) {
+// Improves the first `count` blocks, which have been fitted, where palettes of 6 values are better.
+void try_six_values(const Channel& channel, Bc4Codes codes, int count, std::byte* blocks) {
+    for (int index = 0; index < count; ++index) {
+        if (!channel.reaches_extremes(index)) continue;
+        const BlockTexels texels = channel.texels(index, codes.top);
+        if (!may_have_six_values(texels, codes.top)) continue;
+        std::byte* const block = blocks + 16 * std::ptrdiff_t{index};
+        const auto code = [&](int k) { return (std::to_integer<int>(block[k]) + codes.bias) & 0xFF; };
+        const Bc4Endpoints fitted{code(0), code(1)};
+        const Bc4Endpoints best = with_six_values(texels, codes, fitted);
+        if (best.e0 != fitted.e0 || best.e1 != fitted.e1) write_bc4(texels, codes, best, block);
+    }
+}
+
+void search_bc4(const Channel& channel, Bc4Codes codes, int first, std::byte* blocks) {
     search_blocks<Bc4Endpoints>(
-        channel, first, six_values, codes.top,
+        channel, first, codes.top,
         [&](const BlockTexels* texels, const ClusterBounds* bounds, int count, Bc4Endpoints* endpoints) {
             search_bc4_blocks(texels, bounds, count, codes, endpoints);
         },
@@ -124,9 +135,14 @@ void encode_bc5(const BlockRow& row, Bc4Codes codes, Effort effort, std::byte* b
     const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
     const bool extremes =
         fitted > 0 && fit_bc5_blocks({row.x, false}, {row.y, row.negate_y}, fitted, codes, effort, blocks);
-    if (!extremes && fitted == x.blocks()) return;
-    search_bc4(x, codes, fitted, extremes, blocks);
-    search_bc4(channel_y(row), codes, fitted, extremes, blocks + 8);
+    const Channel y = channel_y(row);
+    if (extremes) {
+        try_six_values(x, codes, fitted, blocks);
+        try_six_values(y, codes, fitted, blocks + 8);
+    }
+    if (fitted == x.blocks()) return;
+    search_bc4(x, codes, fitted, blocks);
+    search_bc4(y, codes, fitted, blocks + 8);
 }
 
 void encode_dxt5nm_run(const BlockRow& row, Effort effort, std::byte* blocks) {
@@ -134,9 +150,10 @@ void encode_dxt5nm_run(const BlockRow& row, Effort effort, std::byte* blocks) {
     const int fitted = effort == Effort::best ? 0 : x.whole_blocks();
     const bool extremes =
         fitted > 0 && fit_dxt5nm_blocks({row.x, false}, {row.y, row.negate_y}, fitted, effort, blocks);
-    if (extremes || fitted < x.blocks()) search_bc4(x, kBc4Unorm, fitted, extremes, blocks);
+    if (extremes) try_six_values(x, kBc4Unorm, fitted, blocks);
     if (fitted == x.blocks()) return;
-    search_blocks<GreenEndpoints>(channel_y(row), fitted, false, 255, search_green_blocks, write_green, blocks + 8);
+    search_bc4(x, kBc4Unorm, fitted, blocks);
+    search_blocks<GreenEndpoints>(channel_y(row), fitted, 255, search_green_blocks, write_green, blocks + 8);
 }
 
 }  // namespace

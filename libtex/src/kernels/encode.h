@@ -38,9 +38,9 @@ BlockRow block_row(const Plane& x, const Plane& y, Extent extent, int j, bool ne
 
 // Encode blocks_across(width) blocks of 16 bytes each, one after the other. Components are clamped to [-1, 1]. See
 // pack() for what the blocks guarantee. Effort::fast and normal use fits (fit.h); best uses searches (bc4_search.h,
-// green_search.h). Blocks that lie partly outside the level are searched at every effort. At normal, a BC4 channel is
-// also searched if it has the lowest or the greatest code and up to eight values, as in blocks that were decoded
-// before.
+// green_search.h). Blocks that lie partly outside the level are searched at every effort. At normal, a BC4 channel that
+// has the lowest or the greatest code and up to eight values, as in blocks that were decoded before, also tries
+// palettes of 6 values (six_values.h).
 void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);

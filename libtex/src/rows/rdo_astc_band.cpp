@@ -82,8 +82,7 @@ RdoAstcBand read_astc_band(const float* xy, Extent extent, const PackOptions& op
     band.plain.assign(blocks, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(count));
     band.blocks.reserve(static_cast<std::size_t>(count));
     for (int n = 0; n < count; ++n) {
-        RdoAstcBlock& block =
-            band.blocks.emplace_back(read_astc_block(xy, extent, band.block, n % across, n / across));
+        RdoAstcBlock& block = band.blocks.emplace_back(read_astc_block(xy, extent, band.block, n % across, n / across));
         RdoAstcTexels decoded;
         decode_astc_normals(band.block, blocks + kAstcBlockBytes * static_cast<std::ptrdiff_t>(n), decoded);
         astc_chords(block, band.block_texels, decoded, block.plain);

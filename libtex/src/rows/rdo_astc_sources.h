@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// rdo_astc_sources.h: which earlier blocks in the window a block of ASTC should copy, as a whole or but for its weights.
+// rdo_astc_sources.h: which earlier blocks in the window a block of ASTC should copy, as a whole or but for its
+// weights.
 //
 // All earlier blocks are scored by estimates (kernels/astc_copies.h); what is left of the bound is measured.
 

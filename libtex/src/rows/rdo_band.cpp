@@ -86,8 +86,7 @@ double degrees_of_chord(float chord) {
 }
 
 float longest_chord(const RdoOptions& options, double mean) {
-    const auto usual =
-        static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.mean))));
+    const auto usual = static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.mean))));
     return chord_of(options.max > 0.0f ? options.max : usual);
 }
 

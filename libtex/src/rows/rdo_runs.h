@@ -51,8 +51,8 @@ public:
 
 protected:
     virtual void set_lambda(float lambda) = 0;
-    // Writes the best bytes of the next block into `result_`, or keeps it if the budget, if there is one, has too little
-    // left.
+    // Writes the best bytes of the next block into `result_`, or keeps it if the budget, if there is one, has too
+    // little left.
     virtual void choose_block(int block, const RdoBudget* budget) = 0;
     // Writes what a lambda of 0 writes.
     virtual void keep_block(int block) = 0;
