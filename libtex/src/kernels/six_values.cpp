@@ -46,27 +46,57 @@ private:
     std::int64_t least_;
 };
 
+// The texels between the extremes.
+struct InnerTexels {
+    double values[16];  // codes
+    int count = 0;
+    double least = 0.0, greatest = 0.0;
+};
+
+InnerTexels inner_texels(const BlockTexels& texels, Bc4Codes codes) {
+    InnerTexels inner;
+    for (const std::int32_t value : texels.values) {
+        if (value == 0 || value == codes.top * kCodeUnit) continue;
+        const double code = static_cast<double>(value) / kCodeUnit;
+        inner.least = inner.count == 0 ? code : std::min(inner.least, code);
+        inner.greatest = inner.count == 0 ? code : std::max(inner.greatest, code);
+        inner.values[inner.count++] = code;
+    }
+    return inner;
+}
+
+// Offers the endpoints that suit texels best by least squares, if the least of them is entry i and the greatest is
+// entry j, counted from the lower endpoint.
+void offer_fit(const InnerTexels& inner, int i, int j, BestOfSix& found) {
+    const double step = (inner.greatest - inner.least) / (j - i);
+    double sx = 0.0, sxx = 0.0, sv = 0.0, sxv = 0.0;
+    for (int k = 0; k < inner.count; ++k) {
+        const double value = inner.values[k];
+        const double x = std::floor((value - inner.least) / step + 0.5) + i;
+        sx += x;
+        sxx += x * x;
+        sv += value;
+        sxv += x * value;
+    }
+    const double n = inner.count;
+    const double slope = (n * sxv - sx * sv) / (n * sxx - sx * sx);  // two texels at least differ in x
+    const double low = (sv - slope * sx) / n;
+    found.offer(static_cast<int>(std::floor(low + 0.5)), static_cast<int>(std::floor(low + 5.0 * slope + 0.5)));
+}
+
 }  // namespace
 
 Bc4Endpoints with_six_values(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints fitted) {
     BestOfSix found(texels, codes, fitted);
     if (found.is_exact()) return fitted;
-    std::int32_t least = codes.top * kCodeUnit, greatest = 0;  // of the texels between the extremes
-    for (const std::int32_t value : texels.values) {
-        if (value == 0 || value == codes.top * kCodeUnit) continue;
-        least = std::min(least, value);
-        greatest = std::max(greatest, value);
-    }
-    const auto code = [](double value) { return static_cast<int>(std::floor(value / kCodeUnit + 0.5)); };
-    if (least >= greatest) {
-        found.offer(least / kCodeUnit, least / kCodeUnit);
-        found.offer(least / kCodeUnit, least / kCodeUnit + 1);
+    const InnerTexels inner = inner_texels(texels, codes);
+    if (inner.least >= inner.greatest) {
+        const int code = static_cast<int>(inner.least);
+        found.offer(code, code);
+        found.offer(code, code + 1);
     } else {
-        for (int i = 0; i < 5 && !found.is_exact(); ++i) {
-            for (int j = i + 1; j < 6; ++j) {
-                const double step = static_cast<double>(greatest - least) / (j - i);
-                found.offer(code(least - i * step), code(greatest + (5 - j) * step));
-            }
+        for (int i = 0; i < 5; ++i) {
+            for (int j = i + 1; j < 6 && !found.is_exact(); ++j) offer_fit(inner, i, j, found);
         }
     }
     found.polish();

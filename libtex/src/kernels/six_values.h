@@ -2,7 +2,8 @@
 // six_values.h: finds BC4 palettes of 6 values for texels of which some have the lowest or the greatest code.
 //
 // The other texels are on the palette, or near it if they were rounded after they were decoded. So the least and the
-// greatest of them are two of its six entries: fifteen pairs, of which the best one then moves by single codes.
+// greatest of them are two of its six entries. Each of the fifteen pairs gives endpoints by least squares, and the best
+// of these move by single codes.
 
 #pragma once
 
