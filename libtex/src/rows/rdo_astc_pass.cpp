@@ -39,7 +39,7 @@ private:
     [[nodiscard]] AstcChoice plain_choice(int block) const;
     [[nodiscard]] float bits_of(const AstcChoice& choice) const;
     void try_choice(int block, const AstcChoice& choice);
-    void try_whole(int block, int at);
+    void try_all(int block, int at);
     void try_front(int block, int at);
     void write(int block, const AstcChoice& choice);
 
@@ -94,7 +94,7 @@ void AstcPass::try_choice(int block, const AstcChoice& choice) {
     best_ = choice;
 }
 
-void AstcPass::try_whole(int block, int at) {
+void AstcPass::try_all(int block, int at) {
     AstcChoice choice{{}, kAstcBlockBytes * (block - at), kAstcBlockBytes, sources_.decoded(at)};
     std::memcpy(choice.bytes, written(at), kAstcBlockBytes);
     try_choice(block, choice);
@@ -119,7 +119,7 @@ void AstcPass::choose_block(int block, const RdoBudget* budget) {
     least_ = kTooLong;
     try_choice(block, plain_choice(block));
     sources_.find({block, &texels, astc_angle_scale(texels, band_.block_texels), least_});
-    for (const int at : sources_.wholes()) try_whole(block, at);
+    for (const int at : sources_.wholes()) try_all(block, at);
     for (const int at : sources_.fronts()) try_front(block, at);
     const auto try_near = [&](int distance) {
         const int at = block - distance / kAstcBlockBytes;
@@ -127,7 +127,7 @@ void AstcPass::choose_block(int block, const RdoBudget* budget) {
         const auto is_new = [at](const std::vector<int>& found) {
             return std::find(found.begin(), found.end(), at) == found.end();
         };
-        if (is_new(sources_.wholes())) try_whole(block, at);
+        if (is_new(sources_.wholes())) try_all(block, at);
         if (is_new(sources_.fronts())) try_front(block, at);
     };
     bool tries_before = true;
