@@ -43,6 +43,16 @@ Frame CornerFrames::at(const std::array<double, 3>& weights) const {
     return {t, (sign < 0.0 ? -1.0 : 1.0) * cross(n, t), n};
 }
 
+FrameCorners CornerFrames::corners() const {
+    FrameCorners corners{};
+    copy_to(tangents_, corners.tangents);
+    copy_to(bitangents_, corners.bitangents);
+    copy_to(normals_, corners.normals);
+    std::copy(signs_.begin(), signs_.end(), corners.signs);
+    corners.kind = decoder_kind(decoder_);
+    return corners;
+}
+
 Vector3 read_texel(Decoder decoder, Vector3 t) {
     if (!rebuilds_z(decoder)) return t;
     return {t.x, t.y, std::sqrt(std::max(0.0, 1.0 - t.x * t.x - t.y * t.y))};

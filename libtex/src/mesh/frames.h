@@ -9,6 +9,7 @@
 #include <tex/mesh.h>
 #include <tex/types.h>
 
+#include "kernels/corner_vectors.h"
 #include "mesh/vector3.h"
 
 namespace tex::inline v1 {
@@ -26,6 +27,8 @@ public:
 
     // At the point with these weights of the corners.
     [[nodiscard]] Frame at(const std::array<double, 3>& weights) const;
+    // For encode_vectors(), which encodes at many points.
+    [[nodiscard]] FrameCorners corners() const;
 
 private:
     std::array<Vector3, 3> normals_, tangents_, bitangents_;

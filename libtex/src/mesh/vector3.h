@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include <tex/mesh.h>
 
@@ -17,6 +18,8 @@ struct Vector3 {
 inline Vector3 vector_of(Float3 a) {
     return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
+
+inline Vector3 vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 inline Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -34,6 +37,15 @@ inline Vector3 normalized(Vector3 v) {
 
 inline Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>& weights) {
     return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
+}
+
+// As kernels/corner_vectors.h wants them: rows[corner][axis].
+inline void copy_to(const std::array<Vector3, 3>& v, double (&rows)[3][3]) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        rows[k][0] = v[k].x;
+        rows[k][1] = v[k].y;
+        rows[k][2] = v[k].z;
+    }
 }
 
 }  // namespace tex::inline v1

@@ -76,7 +76,7 @@ Vector3 HighSurface::face_normal(const Triangles::Place& place) {
     return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
 
-Vector3 HighSurface::normal_at(const Triangles::Place& place, const Weights& weights, Seen& seen) const {
+Vector3 HighSurface::normal_at(const Triangles::Place& place, const Weights& weights) const {
     const HighDetail* const detail = detail_of(place);
     if (detail != nullptr && detail->normals != nullptr) {
         const NormalMap& map = *detail->normals;
@@ -86,14 +86,9 @@ Vector3 HighSurface::normal_at(const Triangles::Place& place, const Weights& wei
         return decode(frames.at(weights), t);
     }
     if (!place.part.normals.empty()) {
-        if (seen.part != &place.part || seen.number != place.number) {
-            seen.part = &place.part;
-            seen.number = place.number;
-            for (std::size_t k = 0; k < 3; ++k)
-                seen.normals[k] = normalized(vector_of(place.part.normals[place.vertex(k)]));
-        }
         Vector3 sum;
-        for (std::size_t k = 0; k < 3; ++k) sum = sum + weights[k] * seen.normals[k];
+        for (std::size_t k = 0; k < 3; ++k)
+            sum = sum + weights[k] * normalized(vector_of(place.part.normals[place.vertex(k)]));
         if (dot(sum, sum) > 1e-12) return normalized(sum);
     }
     return face_normal(place);

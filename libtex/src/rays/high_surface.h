@@ -20,14 +20,13 @@ public:
 
     using Weights = std::array<double, 3>;
 
-    // The triangle that normal_at() saw last, with the normals of its corners: neighbours often hit the same one.
-    struct Seen {
-        const MeshPart* part = nullptr;
-        std::size_t number = 0;
-        std::array<Vector3, 3> normals;
-    };
-    // The normal at the place: see transfer.h. Of unit length.
-    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights, Seen& seen) const;
+    // The normal at the place: see mesh.h. Of unit length.
+    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights) const;
+    // Whether it is mixed from the normals of the corners alone.
+    [[nodiscard]] bool mixes_normals(const Triangles::Place& place) const {
+        const HighDetail* const detail = detail_of(place);
+        return (detail == nullptr || detail->normals == nullptr) && !place.part.normals.empty();
+    }
     [[nodiscard]] static Vector3 face_normal(const Triangles::Place& place);
 
     [[nodiscard]] bool has_colors() const { return has_colors_; }

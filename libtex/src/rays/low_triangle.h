@@ -35,14 +35,21 @@ public:
         }
     }
 
-    [[nodiscard]] Vector3 point(const std::array<double, 3>& weights) const { return mix(corners_, weights); }
+    // The places with these weights.
+    void points(VectorArrays<const double> weights, std::size_t count, VectorArrays<double> points) const {
+        CornerVectors corners;
+        copy_to(corners_, corners);
+        mix_corners(corners, weights, count, points);
+    }
 
-    // The frame so many texels from the place with these weights, or there if that is far beyond the triangle.
-    [[nodiscard]] Frame frame(const std::array<double, 3>& weights, double x, double y) const {
+    [[nodiscard]] const CornerFrames& frames() const { return frames_; }
+
+    // The weights so many texels from the place with these weights, or these if that is far beyond the triangle.
+    [[nodiscard]] std::array<double, 3> moved(const std::array<double, 3>& weights, double x, double y) const {
         std::array<double, 3> there{};
         for (std::size_t k = 0; k < 3; ++k) there[k] = weights[k] + x * along_x_[k] + y * along_y_[k];
         const bool is_near = *std::min_element(there.begin(), there.end()) >= -1.0;
-        return frames_.at(is_near ? there : weights);
+        return is_near ? there : weights;
     }
 
 private:

@@ -189,6 +189,20 @@ Vector3 RayDirections::at(std::size_t triangle, const std::array<double, 3>& wei
     return skewed(triangle, weights, own_.empty() ? 0.0 : straightness(point));
 }
 
+void RayDirections::along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
+                          std::size_t count, VectorArrays<double> directions) const {
+    CornerVectors corners;
+    copy_to(of_corners(normals_, triangle), corners);
+    if (own_.empty() && mix_directions(corners, weights, count, directions)) return;
+    for (std::size_t k = 0; k < count; ++k) {
+        const Vector3 direction = at(triangle, {weights.x[k], weights.y[k], weights.z[k]},
+                                     {points.x[k], points.y[k], points.z[k]});
+        directions.x[k] = direction.x;
+        directions.y[k] = direction.y;
+        directions.z[k] = direction.z;
+    }
+}
+
 Vector3 RayDirections::skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const {
     const Vector3 smooth = normalized(mix(of_corners(normals_, triangle), weights));
     Vector3 direction = smooth;

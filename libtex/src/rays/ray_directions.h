@@ -12,6 +12,7 @@
 
 #include <tex/mesh.h>
 
+#include "kernels/corner_vectors.h"
 #include "rays/box_tree.h"
 
 namespace tex::inline v1 {
@@ -27,6 +28,9 @@ public:
     [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point) const;
     // The same with this k of RayMode::straight.
     [[nodiscard]] Vector3 skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const;
+    // Those of many points of a triangle.
+    void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
+               std::size_t count, VectorArrays<double> directions) const;
 
     // The hard edges as triangles without area; empty unless the mode is `straight`.
     [[nodiscard]] const MeshPart& hard_edges() const { return *hard_; }

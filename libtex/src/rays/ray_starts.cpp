@@ -58,6 +58,19 @@ RayStart RayStarts::at(std::size_t triangle, const std::array<double, 3>& weight
     return {point, direction, front};
 }
 
+void RayStarts::along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
+                      std::size_t count, VectorArrays<double> directions, RayStart* starts) const {
+    const auto point_of = [&](std::size_t k) { return Vector3{points.x[k], points.y[k], points.z[k]}; };
+    if (inputs_.cage != nullptr) {
+        for (std::size_t k = 0; k < count; ++k)
+            starts[k] = at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, point_of(k), 0.0, 0.0);
+        return;
+    }
+    directions_.along(triangle, weights, points, count, directions);
+    for (std::size_t k = 0; k < count; ++k)
+        starts[k] = {point_of(k), {directions.x[k], directions.y[k], directions.z[k]}, front_};
+}
+
 double RayStarts::farthest(const MeshPart& low) const {
     if (inputs_.cage == nullptr) return front_;
     double squared = 0.0;

@@ -24,7 +24,11 @@ public:
     [[nodiscard]] RayStart at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
                               double y) const;
 
-    // Whether at() needs x and y.
+    // Those of many places of a triangle, without pictures. Writes their directions to `directions`.
+    void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
+               std::size_t count, VectorArrays<double> directions, RayStart* starts) const;
+
+    // Whether the place in the map matters.
     [[nodiscard]] bool has_pictures() const { return inputs_.skew != nullptr || inputs_.offset != nullptr; }
 
     // The largest distance between the corners of the cage and of `low`, or `front` without a cage.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +15,10 @@
 
 #include <tex/mesh.h>
 
+#include "kernels/corner_vectors.h"
 #include "mesh/coverage.h"
 #include "rays/high_surface.h"
+#include "rays/hit_normals.h"
 #include "rays/low_triangle.h"
 #include "rays/ray_casts.h"
 #include "rays/ray_groups.h"
@@ -26,9 +29,6 @@ namespace tex::inline v1 {
 
 // In NormalMap::x, marks texels that have no normal yet.
 inline constexpr float kNoNormal = std::numeric_limits<float>::quiet_NaN();
-
-// Sets a texel of a map of vectors.
-void put(NormalMap& map, int i, int j, Vector3 n);
 
 // From the lowest to the highest of the numbers that it has seen.
 struct SeenRange {
@@ -59,7 +59,7 @@ class TransferStrips {
 public:
     // Both must outlive this. The maps that are wanted are not empty.
     TransferStrips(const TransferScene& scene, TransferredMaps& result)
-        : scene_(scene), n_(scene.subsamples), result_(result) {}
+        : scene_(scene), n_(scene.subsamples), result_(result), wants_more_(wants_more()) {}
 
     // Threads may transfer different strips at the same time.
     void run(int strip);
@@ -67,12 +67,27 @@ public:
     void finish();
 
 private:
+    // Rays that are cast at once: of some texels of a row.
+    static constexpr std::size_t kRaysAtOnce = HitNormals::kMost;
     // A covered sample of a texel.
     struct Sample {
         int i;
+        std::int32_t triangle;
         std::size_t place;  // among the n x n samples of its texel
-        Covered covered;
         int group;
+    };
+    // A texel with a hit.
+    struct Texel {
+        int i;
+        std::int32_t triangle;  // whose tangent space it gets
+    };
+    // Texels of a row, which get their tangent space together.
+    struct Texels {
+        std::size_t count = 0;
+        std::array<Texel, kRaysAtOnce> list;
+        std::vector<Vector3> bent;  // of second rays
+        VectorBlock<kRaysAtOnce> weights, normals, units;
+        float x[kRaysAtOnce + kMoreVectors], y[kRaysAtOnce + kMoreVectors], z[kRaysAtOnce + kMoreVectors];
     };
     // What a strip adds to the counts of the result.
     struct Found {
@@ -86,10 +101,23 @@ private:
         LowTriangle triangle;
     };
     static constexpr std::size_t kKept = 256;
+    // The samples of a texel that hit.
+    struct Hits {
+        int count = 0;
+        Vector3 normal;
+        double height = 0.0;
+    };
+    // What else is wanted of them.
+    struct More {
+        Vector3 position, color, vertex_color;
+        SecondRays::Sums second;
+        std::vector<std::int32_t> ids;
+    };
     // Strips use its memory one after the other.
     struct Strip : Found {
         std::vector<Covered> covered;  // of samples
         std::vector<Sample> samples;
+        VectorBlock<kRaysAtOnce> weights, points, directions;  // of the samples
         std::vector<RayStart> starts;
         std::vector<RayEnd> ends;
         // Those of one group.
@@ -98,35 +126,34 @@ private:
         std::vector<RayEnd> chosen_ends;
         RayCaster::Scratch casts;
         SecondRays::Scratch scratch;
-        HighSurface::Seen seen;
-        std::vector<std::int32_t> ids;  // of the hits of a texel
+        HitNormals normals;
+        std::size_t next_hit = 0;  // in `normals`
+        Texels texels;
+        More more;  // of the texel
         std::vector<Kept> kept = std::vector<Kept>(kKept);
     };
-    // The samples of a texel that hit.
-    struct Hits {
-        int count = 0;
-        Vector3 normal, position;
-        double height = 0.0;
-        Vector3 color, vertex_color;
-        SecondRays::Sums second;
-    };
 
-    const LowTriangle& triangle_of(Strip& strip, const Covered& covered) const;
+    const LowTriangle& triangle_of(Strip& strip, std::int32_t number) const;
     void cast(Strip& strip, int first_row, int j, int begin, int end) const;
     void collect(Strip& strip, int first_row, int j, int begin, int end) const;
+    void start_rays(Strip& strip, int j) const;
     void cast_groups(Strip& strip) const;
+    void find_normals(Strip& strip) const;
     void finish_texel(Strip& strip, int i, int j, std::size_t begin, std::size_t end) const;
-    void add_hit(Strip& strip, int i, int j, std::size_t k, Hits& hits) const;
-    void put_values(Strip& strip, int i, int j, const Hits& hits) const;
-    void put_surface(Strip& strip, int i, int j, const Hits& hits) const;
+    [[nodiscard]] bool wants_more() const;
+    void see_more(Strip& strip, int i, int j, std::size_t begin, std::size_t end, std::size_t hit) const;
+    void see_second(Strip& strip, int i, int j, std::size_t k, std::size_t hit) const;
+    void put_more(Strip& strip, int i, int j, double part) const;
     void miss_texel(Strip& strip, int i, int j, std::size_t begin) const;
-    void encode_texel(Strip& strip, int i, int j, std::size_t begin, std::size_t end, const Hits& hits) const;
+    void add_texel(Strip& strip, int i, std::size_t begin, std::size_t end, const Hits& hits) const;
+    void encode_texels(Strip& strip, int j) const;
     [[nodiscard]] std::unique_ptr<Strip> take_strip();
     void add(std::unique_ptr<Strip> strip, std::int64_t overlaps);
 
     const TransferScene& scene_;
     const int n_;
     TransferredMaps& result_;
+    const bool wants_more_;
     std::mutex mutex_;  // guards the counts in result_, and:
     std::vector<std::unique_ptr<Strip>> idle_;
     std::vector<float> needs_;

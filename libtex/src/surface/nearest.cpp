@@ -21,16 +21,28 @@ int axis_distance(int i, int k, int n, bool repeats) {
     return repeats ? std::min(straight, n - straight) : straight;
 }
 
+bool has_hole(const float* row, int count) {
+    int holes = 0;  // all are counted, so that a vector of them is looked at together
+    for (int i = 0; i < count; ++i) holes += std::isnan(row[i]) ? 1 : 0;
+    return holes > 0;
+}
+
 // First pass: for columns [begin, end), finds the row of the nearest valid texel in the same column; the upper one if
-// two are equally near.
-void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, int end, Plane<std::int32_t>& nearest) {
+// two are equally near. Rows without holes stay as they are, because nothing reads them.
+void find_in_columns(PlaneView<const float> heights, const std::vector<std::uint8_t>& has_holes, bool repeats,
+                     int begin, int end, Plane<std::int32_t>& nearest) {
     const int rows = heights.extent.height;
     std::vector<std::int32_t> last(static_cast<std::size_t>(end - begin));
+    const auto is_full = [&](int row) { return has_holes[static_cast<std::size_t>(row)] == 0; };
     // Downwards: the valid texel above. On an axis that repeats, a second round lets texels at the bottom count for the
     // top.
     std::fill(last.begin(), last.end(), kNone);
     for (int j = repeats ? -rows : 0; j < rows; ++j) {
         const int row = wrap_around(j, rows);
+        if (is_full(row)) {
+            std::fill(last.begin(), last.end(), row);
+            continue;
+        }
         for (int i = begin; i < end; ++i) {
             std::int32_t& seen = last[static_cast<std::size_t>(i - begin)];
             if (!std::isnan(heights.at(i, row))) seen = row;
@@ -41,6 +53,10 @@ void find_in_columns(PlaneView<const float> heights, bool repeats, int begin, in
     std::fill(last.begin(), last.end(), kNone);
     for (int j = repeats ? 2 * rows - 1 : rows - 1; j >= 0; --j) {
         const int row = wrap_around(j, rows);
+        if (is_full(row)) {
+            std::fill(last.begin(), last.end(), row);
+            continue;
+        }
         for (int i = begin; i < end; ++i) {
             std::int32_t& seen = last[static_cast<std::size_t>(i - begin)];
             if (!std::isnan(heights.at(i, row))) seen = row;
@@ -137,30 +153,36 @@ void fill_row(PlaneView<const float> values, const Plane<std::int32_t>& nearest,
     });
 }
 
-bool has_hole(const float* row, int count) {
-    return std::any_of(row, row + count, [](float h) { return std::isnan(h); });
-}
-
 }  // namespace
 
 Result<void> visit_holes(PlaneView<const float> values, Wrap wrap_x, Wrap wrap_y, const Execution& execution,
                          ProgressSpan span, const Fill& fill) {
     const Extent extent = values.extent;
     const bool repeats_x = wrap_x == Wrap::repeat, repeats_y = wrap_y == Wrap::repeat;
+    const int rows_at_once = std::max(1, (1 << 15) / extent.width);
+    std::vector<std::uint8_t> has_holes(static_cast<std::size_t>(extent.height));
+    const auto look = [&](int begin, int end) {
+        for (int j = begin; j < end; ++j)
+            has_holes[static_cast<std::size_t>(j)] = has_hole(values.row(j), extent.width) ? 1 : 0;
+    };
+    if (auto done = parallel_for(execution.quiet(), extent.height, rows_at_once, look); !done) return done;
     Plane<std::int32_t> nearest(extent);
     const double half = (span.from + span.to) / 2;
     constexpr int kColumns = 256;
-    const auto columns = [&](int begin, int end) { find_in_columns(values, repeats_y, begin, end, nearest); };
+    const auto columns = [&](int begin, int end) {
+        find_in_columns(values, has_holes, repeats_y, begin, end, nearest);
+    };
     if (auto done = parallel_for(execution, extent.width, kColumns, columns, {span.from, half}); !done) return done;
 
     // A hole is written by the thread that processes its row. No thread reads holes, because sites are valid texels.
     const auto rows = [&](int begin, int end) {
         RowOfSites sites;
         for (int j = begin; j < end; ++j) {
-            if (has_hole(values.row(j), extent.width)) fill_row(values, nearest, j, repeats_x, repeats_y, sites, fill);
+            if (has_holes[static_cast<std::size_t>(j)] != 0)
+                fill_row(values, nearest, j, repeats_x, repeats_y, sites, fill);
         }
     };
-    return parallel_for(execution, extent.height, std::max(1, (1 << 15) / extent.width), rows, {half, span.to});
+    return parallel_for(execution, extent.height, rows_at_once, rows, {half, span.to});
 }
 
 Result<void> fill_from_nearest(PlaneView<float> heights, Wrap wrap_x, Wrap wrap_y, const Execution& execution,

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "rays/hit_normals.h"
+
+namespace tex::inline v1 {
+
+// Corners of places whose normal is not just mixed become (0, 0, 0), so that find() looks at them alone.
+void HitNormals::add(const HighSurface& surface, const Triangles::Place& place, const HighSurface::Weights& weights) {
+    const std::size_t k = places_.size();
+    places_.push_back(place);
+    weights_.x[k] = weights[0];
+    weights_.y[k] = weights[1];
+    weights_.z[k] = weights[2];
+    const bool mixes = surface.mixes_normals(place);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Float3 n = mixes ? place.part.normals[place.vertex(corner)] : Float3{};
+        corners_[3 * corner][k] = n.x;
+        corners_[3 * corner + 1][k] = n.y;
+        corners_[3 * corner + 2][k] = n.z;
+    }
+}
+
+void HitNormals::find(const HighSurface& surface) {
+    const float* rows[9];
+    for (std::size_t row = 0; row < 9; ++row) rows[row] = corners_[row];
+    if (mix_normals(rows, weights_.all(), places_.size(), normals_.all())) return;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+        const Vector3 mixed = at(k);
+        if (dot(mixed, mixed) > 0.0) continue;
+        const Vector3 normal = surface.normal_at(places_[k], {weights_.x[k], weights_.y[k], weights_.z[k]});
+        normals_.x[k] = normal.x;
+        normals_.y[k] = normal.y;
+        normals_.z[k] = normal.z;
+    }
+}
+
+}  // namespace tex::inline v1

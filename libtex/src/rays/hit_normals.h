@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// hit_normals.h: the normals of the high mesh at many hits, found together.
+
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "kernels/corner_vectors.h"
+#include "rays/high_surface.h"
+
+namespace tex::inline v1 {
+
+class HitNormals {
+public:
+    static constexpr std::size_t kMost = 512;
+
+    void clear() { places_.clear(); }
+    // Precondition: there are fewer than kMost.
+    void add(const HighSurface& surface, const Triangles::Place& place, const HighSurface::Weights& weights);
+    // Finds what HighSurface::normal_at() finds.
+    void find(const HighSurface& surface);
+
+    // Of the k-th hit that was added.
+    [[nodiscard]] const Triangles::Place& place(std::size_t k) const { return places_[k]; }
+    [[nodiscard]] Vector3 at(std::size_t k) const { return {normals_.x[k], normals_.y[k], normals_.z[k]}; }
+
+private:
+    std::vector<Triangles::Place> places_;
+    VectorBlock<kMost> weights_, normals_;
+    float corners_[9][kMost + kMoreVectors] = {};  // normals: corner and axis, place
+};
+
+}  // namespace tex::inline v1
