@@ -208,7 +208,7 @@ Result<void> TransferNormals::make(cli::Job& job) {
     if (!meshes) return meshes.error();
     auto maps = cast(job, *meshes);
     if (!maps) return maps.error();
-    if (auto judged = rays_.judge(job, *maps); !judged) return judged;
+    if (auto judged = rays_.judge(job, *maps, guides_.remedy()); !judged) return judged;
     if (auto written = write(job, *meshes, *maps); !written) return written;
     if (auto written = ids_.write(job, *meshes->high, *maps); !written) return written;
     const YAxis y = output.of(job.task.engine).y.value_or(YAxis::up);

@@ -137,6 +137,9 @@ TEST_F(TransferMaps, IsGuidedByCagesSkewAndOffsets) {
     EXPECT_NE(scratch_.read("smooth.png"), scratch_.read("white_n.png"));
     const auto offset = reports({"crate_low.glb", "crate_high.glb", "-o", "o.png", "--offset", "black.png"});
     EXPECT_LE(offset["heights"]["highest"].get<double>(), 1e-6);
+    EXPECT_NE(go({"crate_low.glb", "crate_high.glb", "-o", "o.png", "--offset", "black.png"})
+                  .err.find("raise the factors of --offset there, or --front"),
+              std::string::npos);
 }
 
 TEST_F(TransferMaps, TakesPicturesOfTheHighMesh) {

@@ -101,4 +101,14 @@ inline MeshPart hard_cube(float size) {
     return cube;
 }
 
+// The maps of `low` in its own tangent space.
+inline Result<TransferredMaps> guided(const MeshPart& low, const std::vector<MeshPart>& high, Extent extent,
+                                      const TransferInputs& inputs, const TransferOptions& options = all_maps()) {
+    const auto tangents = make_tangents(low);
+    if (!tangents) return tangents.error();
+    return transfer(extent, {low, *tangents}, high, inputs, options);
+}
+
+inline Reach length(double value) { return {Reach::Unit::absolute, value}; }
+
 }  // namespace tex

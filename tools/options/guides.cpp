@@ -77,6 +77,11 @@ void GuideOptions::add(Command& command) {
     });
 }
 
+const char* GuideOptions::remedy() const {
+    if (!cage_.empty()) return "move the cage outwards there";
+    return offset_.empty() ? "" : "raise the factors of --offset there, or --front";
+}
+
 std::string GuideOptions::name_of(const std::string& pattern, const Task& task) {
     return pattern.empty() ? std::string() : with_tile(NamePattern(pattern).expand(name_fields(task.input)), task.tile);
 }

@@ -31,6 +31,9 @@ public:
     // Rays must be straight for --skew, which turns them so if the user has not chosen any.
     [[nodiscard]] bool wants_straight() const { return !skew_.empty(); }
 
+    // What to change where rays are too short, instead of --front: nothing if neither --cage nor --offset is given.
+    [[nodiscard]] const char* remedy() const;
+
     // Adds the files to the task.
     void amend(Task& task) const;
 

@@ -119,12 +119,18 @@ void RayOptions::add_coverage(Command& command) {
     command.finds_things();
 }
 
-void RayOptions::judge_missed(Job& job, const TransferredMaps& maps) const {
+void RayOptions::judge_missed(Job& job, const TransferredMaps& maps, const std::string& remedy) const {
     if (maps.missed == 0) return;
     std::string sentence = fmt::format("{} of {} texels ({:.3g} %) are missed: no ray hits the high mesh", maps.missed,
                                        maps.covered, percent_of(maps.missed, maps.covered));
     const bool farther = maps.needed_front > maps.front || maps.needed_back > maps.back;
-    if (maps.missed > maps.hopeless && farther) {
+    if (maps.missed > maps.hopeless && !remedy.empty()) {
+        sentence += fmt::format(
+            "; rays that reach {:.4g} in front and {:.4g} behind would hit 95 % of those that a "
+            "longer ray can hit: {}{}",
+            enough(maps.needed_front, maps.diagonal), enough(maps.needed_back, maps.diagonal), remedy,
+            maps.needed_back > maps.back ? ", and --back" : "");
+    } else if (maps.missed > maps.hopeless && farther) {
         sentence += fmt::format("; --front {:.4g} --back {:.4g} would hit 95 % of those that a longer ray can hit",
                                 enough(std::max(maps.needed_front, maps.front), maps.diagonal),
                                 enough(std::max(maps.needed_back, maps.back), maps.diagonal));
@@ -138,7 +144,7 @@ void RayOptions::judge_missed(Job& job, const TransferredMaps& maps) const {
     job.warn(std::move(sentence));
 }
 
-Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps) const {
+Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps, const std::string& remedy) const {
     const double missed = percent_of(maps.missed, maps.covered);
     job.report["covered"] = maps.covered;
     job.report["overlaps"] = maps.overlaps;
@@ -154,7 +160,7 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps) const {
     const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", maps.overlaps);
     if (maps.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, job.task.input, overlaps};
     if (maps.overlaps > 0) job.warn(overlaps + "; the first one decides");
-    judge_missed(job, maps);
+    judge_missed(job, maps, remedy);
     if (maps.behind > 0) {
         job.warn(fmt::format("{} rays meet only triangles that face the other way; {}", maps.behind,
                              transfer_.backfaces ? "they count, because of --backfaces"

@@ -31,12 +31,13 @@ public:
 
     // Reports what the rays found, with warnings about what they did not, and raises the exit code if more texels are
     // missed than --max-missed allows.
-    [[nodiscard]] Result<void> judge(Job& job, const TransferredMaps& maps) const;
+    // `remedy` is that of GuideOptions.
+    [[nodiscard]] Result<void> judge(Job& job, const TransferredMaps& maps, const std::string& remedy) const;
 
 private:
     void add_second(Command& command);
     void add_coverage(Command& command);
-    void judge_missed(Job& job, const TransferredMaps& maps) const;
+    void judge_missed(Job& job, const TransferredMaps& maps, const std::string& remedy) const;
 
     Extent extent_{2048, 2048};
     TransferOptions transfer_;

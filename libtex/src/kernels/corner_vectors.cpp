@@ -33,7 +33,9 @@ HWY_INLINE void store(Wide3 v, VectorArrays<double> to, std::size_t k) {
     hn::StoreU(v.z, kWide, to.z + k);
 }
 
-HWY_INLINE Wide3 set(const double (&v)[3]) { return {hn::Set(kWide, v[0]), hn::Set(kWide, v[1]), hn::Set(kWide, v[2])}; }
+HWY_INLINE Wide3 set(const double (&v)[3]) {
+    return {hn::Set(kWide, v[0]), hn::Set(kWide, v[1]), hn::Set(kWide, v[2])};
+}
 HWY_INLINE Wide3 add(Wide3 a, Wide3 b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
 HWY_INLINE Wide3 scaled(WideVec s, Wide3 a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
 HWY_INLINE WideVec dot(Wide3 a, Wide3 b) {
@@ -80,9 +82,8 @@ bool MixNormals(const float* const normals[9], VectorArrays<const double> weight
     bool all = true;
     for (std::size_t k = 0; k < count; k += kWideLanes) {
         const auto normal = [&](std::size_t corner) HWY_ATTR {
-            const auto at = [&](std::size_t axis) HWY_ATTR {
-                return hn::PromoteTo(kWide, hn::LoadU(f, normals[3 * corner + axis] + k));
-            };
+            const auto at = [&](std::size_t axis)
+                                HWY_ATTR { return hn::PromoteTo(kWide, hn::LoadU(f, normals[3 * corner + axis] + k)); };
             return unit(Wide3{at(0), at(1), at(2)});
         };
         const Wide3 w = load(weights, k);

@@ -8,6 +8,7 @@
 
 #include "rays/box_cuts.h"
 #include "threads/guard.h"
+#include "threads/huge_pages.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -79,7 +80,7 @@ private:
         int level;
     };
 
-    void measure();
+    Result<void> measure(const Execution& execution);
     [[nodiscard]] FloatBox box_of(std::size_t triangle) const;
     Result<void> box_triangles(const Execution& execution);
     Result<void> build_top(const Execution& execution);
@@ -94,16 +95,25 @@ private:
 };
 
 // The box of all triangles, and the power of two that brings it into [-1, 1].
-void TreeBuilder::measure() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Vector3 low{kInfinity, kInfinity, kInfinity}, high{-kInfinity, -kInfinity, -kInfinity};
+Result<void> TreeBuilder::measure(const Execution& execution) {
+    constexpr int kGrain = 1 << 16;
+    FloatBox all;
     for (const MeshPart* part : triangles_.parts()) {
-        for (const std::uint32_t v : part->indices) {
-            const Vector3 p = vector_of(part->positions[v]);
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        }
+        const auto count = static_cast<int>(part->indices.size());
+        std::vector<FloatBox> pieces(static_cast<std::size_t>((count + kGrain - 1) / kGrain));
+        const auto measure_piece = [&](int begin, int end) {
+            FloatBox box;
+            for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+                const Float3& p = part->positions[part->indices[k]];
+                box.include({{p.x, p.y, p.z}, {p.x, p.y, p.z}});
+            }
+            pieces[static_cast<std::size_t>(begin / kGrain)] = box;
+        };
+        if (auto done = parallel_for(execution.quiet(), count, kGrain, measure_piece); !done) return done;
+        for (const FloatBox& box : pieces) all.include(box);
     }
+    const Vector3 low = vector_of(Float3{all.low[0], all.low[1], all.low[2]}),
+                  high = vector_of(Float3{all.high[0], all.high[1], all.high[2]});
     tree_.low_ = low;
     tree_.high_ = high;
     tree_.center_ = 0.5 * (low + high);
@@ -111,6 +121,7 @@ void TreeBuilder::measure() {
     int exponent = 0;
     if (half > 0.0) std::frexp(half, &exponent);
     tree_.scale_ = std::ldexp(1.0, -exponent);
+    return {};
 }
 
 FloatBox TreeBuilder::box_of(std::size_t triangle) const {
@@ -217,6 +228,9 @@ void TreeBuilder::join(const std::vector<Piece>& pieces, const std::vector<std::
     }
     tree_.boxes_.reserve(boxes);
     tree_.groups_.reserve(groups);
+    // Rays come to all of it, and large pages are found faster.
+    prefer_huge_pages(tree_.boxes_.data(), boxes * sizeof(Boxes));
+    prefer_huge_pages(tree_.groups_.data(), groups * sizeof(TriangleGroup));
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const auto first_box = static_cast<std::uint32_t>(tree_.boxes_.size());
         const auto first_group = static_cast<std::uint32_t>(tree_.groups_.size());
@@ -233,7 +247,7 @@ void TreeBuilder::join(const std::vector<Piece>& pieces, const std::vector<std::
 }
 
 Result<void> TreeBuilder::run(const Execution& execution, ProgressSpan span) {
-    measure();
+    if (auto measured = measure(execution); !measured) return measured;
     if (auto boxed = box_triangles(execution); !boxed) return boxed;
     if (auto built = build_top(execution); !built) return built;
     std::vector<Piece> pieces(jobs_.size());

@@ -51,7 +51,7 @@ private:
     bool has_colors_ = false;
 };
 
-// Errors: bad_option, if ids and details do not fit the parts (transfer.h).
+// Errors: bad_option, if ids and details do not fit the parts (mesh.h).
 Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high);
 
 }  // namespace tex::inline v1

@@ -195,8 +195,8 @@ void RayDirections::along(std::size_t triangle, VectorArrays<const double> weigh
     copy_to(of_corners(normals_, triangle), corners);
     if (own_.empty() && mix_directions(corners, weights, count, directions)) return;
     for (std::size_t k = 0; k < count; ++k) {
-        const Vector3 direction = at(triangle, {weights.x[k], weights.y[k], weights.z[k]},
-                                     {points.x[k], points.y[k], points.z[k]});
+        const Vector3 direction =
+            at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, {points.x[k], points.y[k], points.z[k]});
         directions.x[k] = direction.x;
         directions.y[k] = direction.y;
         directions.z[k] = direction.z;

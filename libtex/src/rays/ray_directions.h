@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ray_directions.h: the directions in which rays leave the low mesh: RayMode of transfer_options.h, described in
-// transfer.h.
+// ray_directions.h: the directions in which rays leave the low mesh: RayMode of mesh.h.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// second_rays.h: what is seen from the places that rays have hit: occlusion, bent normals, thickness (transfer.h).
+// second_rays.h: what is seen from the places that rays have hit: occlusion, bent normals, thickness (mesh.h).
 
 #pragma once
 

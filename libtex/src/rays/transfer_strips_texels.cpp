@@ -174,10 +174,9 @@ void TransferStrips::encode_texels(Strip& strip, int j) const {
     for (std::size_t first = 0, end = 0; first < texels.count; first = end) {
         for (end = first; end < texels.count && list[end].triangle == list[first].triangle;) ++end;
         const CornerFrames& frames = triangle_of(strip, list[first].triangle).frames();
-        const EncodedCounts counts =
-            encode_vectors(frames.corners(), texels.weights.all().from(first), texels.normals.all().from(first),
-                           end - first, texels.units.all().from(first),
-                           {texels.x + first, texels.y + first, texels.z + first});
+        const EncodedCounts counts = encode_vectors(
+            frames.corners(), texels.weights.all().from(first), texels.normals.all().from(first), end - first,
+            texels.units.all().from(first), {texels.x + first, texels.y + first, texels.z + first});
         strip.singular += static_cast<std::int64_t>(counts.singular);
         strip.backward += static_cast<std::int64_t>(counts.backward);
         for (std::size_t k = first; k < end && !texels.bent.empty(); ++k) {
