@@ -8,7 +8,6 @@
 
 #include "rays/box_cuts.h"
 #include "threads/guard.h"
-#include "threads/huge_pages.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -228,9 +227,6 @@ void TreeBuilder::join(const std::vector<Piece>& pieces, const std::vector<std::
     }
     tree_.boxes_.reserve(boxes);
     tree_.groups_.reserve(groups);
-    // Rays come to all of it, and large pages are found faster.
-    prefer_huge_pages(tree_.boxes_.data(), boxes * sizeof(Boxes));
-    prefer_huge_pages(tree_.groups_.data(), groups * sizeof(TriangleGroup));
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const auto first_box = static_cast<std::uint32_t>(tree_.boxes_.size());
         const auto first_group = static_cast<std::uint32_t>(tree_.groups_.size());
