@@ -182,8 +182,7 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     result.front = starts.farthest(low.part);
 
     const int n = options.subsamples;
-    const Extent samples{extent.width * n, extent.height * n};
-    const auto coverage = CoverageMap::make(low.part, low.uv_set, samples, 0, n, CoverageMap::fine_steps(samples));
+    const auto coverage = CoverageMap::make(low.part, low.uv_set, {extent.width * n, extent.height * n}, 0, n);
     if (!coverage) return coverage.error().of(low.file);
     make_room(extent, options, result);
     if (surface.has_ids()) result.ids = Plane<std::int32_t>(extent);

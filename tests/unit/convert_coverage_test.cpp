@@ -30,8 +30,9 @@ TEST(ConvertCoverage, CoversEveryTexelOnce) {
     }
 }
 
-// Inside the square, many triangles of random shapes meet in each vertex.
-MeshPart odd_triangles() {
+// Inside the square, many triangles of random shapes meet in each vertex. No texel between them is missed or counted
+// twice.
+TEST(ConvertCoverage, LeavesNoCracksBetweenOddTriangles) {
     MeshPart part = wavy_part(24);
     for (std::size_t k = 0; k < part.uvs[0].size(); ++k) {
         Float2& uv = part.uvs[0][k];
@@ -40,46 +41,12 @@ MeshPart odd_triangles() {
         const float shift = 0.012f * static_cast<float>(static_cast<int>(k * 2654435761u % 1000u) - 500) / 500.0f;
         if (!border) uv = {uv.x + shift, uv.y + 0.7f * shift};
     }
-    return part;
-}
-
-// No texel between them is missed or counted twice.
-TEST(ConvertCoverage, LeavesNoCracksBetweenOddTriangles) {
-    const MeshPart part = odd_triangles();
     const auto tangents = make_tangents(part);
     ASSERT_TRUE(tangents);
     const auto converted = to_object_space(bumpy_map({257, 311}), {part, *tangents});
     ASSERT_TRUE(converted);
     EXPECT_EQ(converted->overlaps, 0);
     EXPECT_EQ(converted->covered, 257 * 311);
-}
-
-// In fine steps, too, and then the place of a texel is where its weights say, to a few thousandths of a texel.
-TEST(ConvertCoverage, FineStepsLeaveNoCracksAndMoveNoTexel) {
-    EXPECT_EQ(CoverageMap::fine_steps({1 << 14, 1}), 4096);
-    EXPECT_EQ(CoverageMap::fine_steps({1, (1 << 14) + 1}), CoverageMap::kSteps);
-    const MeshPart part = odd_triangles();
-    constexpr Extent kExtent{257, 311};
-    const auto coverage = CoverageMap::make(part, 0, kExtent, 0, 1, CoverageMap::fine_steps(kExtent));
-    ASSERT_TRUE(coverage);
-    for (int strip = 0; strip < coverage->strips(); ++strip) {
-        std::vector<Covered> texels;
-        EXPECT_EQ(coverage->cover(strip, texels), 0);
-        for (std::size_t k = 0; k < texels.size(); ++k) {
-            const Covered& texel = texels[k];
-            ASSERT_TRUE(texel.inside);
-            double x = 0.0, y = 0.0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                const Float2 uv = part.uvs[0][part.indices[3 * static_cast<std::size_t>(texel.triangle) + c]];
-                const auto v = static_cast<double>(uv.y);
-                x += texel.weights[c] * static_cast<double>(uv.x) * kExtent.width;
-                y += texel.weights[c] * (part.v_axis == YAxis::up ? 1.0 - v : v) * kExtent.height;
-            }
-            const auto width = static_cast<std::size_t>(kExtent.width);
-            ASSERT_NEAR(x, static_cast<double>(k % width) + 0.5, 0.0002);
-            ASSERT_NEAR(y, static_cast<double>(k / width) + 0.5 + strip * coverage->strip_rows(), 0.0002);
-        }
-    }
 }
 
 // Which of two triangles gets a texel whose centre is on their edge: the top-left rule of Direct3D 11 and Vulkan.

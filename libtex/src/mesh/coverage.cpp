@@ -13,14 +13,13 @@
 namespace tex::inline v1 {
 namespace {
 
-// Corners are rounded to whole steps, as GPUs do: then the side of an edge that a texel is on is exact, and triangles
+// Corners are rounded to 1/256 texel, as GPUs do: then the side of an edge that a texel is on is exact, and triangles
 // with a common edge neither overlap nor leave a gap.
-//
+constexpr std::int64_t kSteps = 256;
+
 // Limits of a triangle, so that the products of steps fit into 64 bits, and the work stays in proportion to the map.
-constexpr int kMaxRepeats = 16;
-constexpr int kMaxTexels = 1 << 22;
-constexpr std::int64_t kMaxSteps = kMaxTexels * CoverageMap::kSteps;
-constexpr std::int64_t kFineSteps = 4096;
+constexpr double kMaxRepeats = 16.0;
+constexpr double kMaxTexels = 1 << 22;
 constexpr double kMaxUv = 1e6;
 constexpr std::int64_t kMaxLayers = 1024;  // of triangles over the whole map
 constexpr int kStripTexels = 1 << 17;
@@ -76,11 +75,9 @@ Error unfit(std::int32_t triangle, const std::string& what) {
 
 }  // namespace
 
-Result<CoverageMap> CoverageMap::make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows,
-                                      std::int64_t steps) {
+Result<CoverageMap> CoverageMap::make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows) {
     CoverageMap map;
     map.extent_ = extent;
-    map.steps_ = steps;
     map.gutter_ = gutter;
     map.strip_rows_ = rows * std::max(1, std::min(32, kStripTexels / extent.width) / rows);
     map.by_strip_.resize(static_cast<std::size_t>(map.strips()));
@@ -89,11 +86,6 @@ Result<CoverageMap> CoverageMap::make(const MeshPart& part, int uv_set, Extent e
         if (!placed) return placed.error();
     }
     return map;
-}
-
-std::int64_t CoverageMap::fine_steps(Extent extent) {
-    const std::int64_t longest = std::max(extent.width, extent.height);
-    return kMaxRepeats * longest * kFineSteps <= kMaxSteps ? kFineSteps : kSteps;
 }
 
 // Adds a copy of the triangle for each repeat of the map that it touches.
@@ -116,11 +108,13 @@ Result<void> CoverageMap::place(const MeshPart& part, const std::vector<Float2>&
     const auto repeat = [](double value) { return static_cast<std::int64_t>(std::floor(value)); };
     for (std::int64_t j = repeat(low.y - margin_y); j <= repeat(high.y + margin_y); ++j) {
         for (std::int64_t i = repeat(low.x - margin_x); i <= repeat(high.x + margin_x); ++i) {
-            const auto left = static_cast<double>(i), top = static_cast<double>(j), steps = static_cast<double>(steps_);
+            const auto left = static_cast<double>(i), top = static_cast<double>(j);
             Placed placed{triangle, {}, {}};
             for (std::size_t k = 0; k < 3; ++k) {
-                placed.x[k] = static_cast<std::int64_t>(std::floor((corner[k].x - left) * extent_.width * steps + 0.5));
-                placed.y[k] = static_cast<std::int64_t>(std::floor((corner[k].y - top) * extent_.height * steps + 0.5));
+                placed.x[k] =
+                    static_cast<std::int64_t>(std::floor((corner[k].x - left) * extent_.width * kSteps + 0.5));
+                placed.y[k] =
+                    static_cast<std::int64_t>(std::floor((corner[k].y - top) * extent_.height * kSteps + 0.5));
             }
             if (Result<void> added = add(placed, part.triangles()); !added) return added;
         }
@@ -146,7 +140,7 @@ Result<void> CoverageMap::add(const Placed& placed, std::size_t triangles) {
 
 // The texels near a triangle that are in the map, and in the strip unless it is -1.
 CoverageMap::Box CoverageMap::box_of(const Placed& t, int margin, int strip) const {
-    const auto texel = [this](std::int64_t place) { return floor_div(place, steps_); };
+    const auto texel = [](std::int64_t steps) { return floor_div(steps, kSteps); };
     const auto clamp = [](std::int64_t value, int low, int high) {
         return static_cast<int>(std::min<std::int64_t>(std::max<std::int64_t>(value, low), high));
     };
@@ -165,11 +159,11 @@ std::int64_t CoverageMap::cover_inside(const Placed& t, int strip, std::vector<C
     if (area == 0 || box.left > box.right || box.top > box.bottom) return 0;
     const bool is_turned = area < 0;
     if (is_turned) std::swap(corner[1], corner[2]);
-    const TrianglePoint start{box.left * steps_ + steps_ / 2, box.top * steps_ + steps_ / 2};
+    const TrianglePoint start{box.left * kSteps + kSteps / 2, box.top * kSteps + kSteps / 2};
     // Each opposite of the corner with its number.
-    TriangleEdge edges[3] = {{corner[1], corner[2], start, steps_},
-                             {corner[2], corner[0], start, steps_},
-                             {corner[0], corner[1], start, steps_}};
+    TriangleEdge edges[3] = {{corner[1], corner[2], start, kSteps},
+                             {corner[2], corner[0], start, kSteps},
+                             {corner[0], corner[1], start, kSteps}};
     const auto whole = static_cast<double>(is_turned ? -area : area);
     std::int64_t overlaps = 0;
     for (int j = box.top; j <= box.bottom; ++j) {
@@ -193,9 +187,8 @@ void CoverageMap::cover_gutter(const Placed& t, int strip, std::vector<Covered>&
                                std::vector<double>& nearest) const {
     const Box box = box_of(t, gutter_, strip);
     std::array<Point, 3> c;
-    const auto steps = static_cast<double>(steps_);
     for (std::size_t k = 0; k < 3; ++k)
-        c[k] = {static_cast<double>(t.x[k]) / steps, static_cast<double>(t.y[k]) / steps};
+        c[k] = {static_cast<double>(t.x[k]) / kSteps, static_cast<double>(t.y[k]) / kSteps};
     const double area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
     if (area == 0.0) return;
     for (int j = box.top; j <= box.bottom; ++j) {

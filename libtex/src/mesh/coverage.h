@@ -26,14 +26,9 @@ struct Covered {
 // The triangles of a part in texels, x to the right, y down, sorted by the strips of rows that they touch.
 class CoverageMap {
 public:
-    static constexpr std::int64_t kSteps = 256;  // as GPUs have them
-
-    // `gutter` is its width in texels. Strips have a multiple of `rows` rows, except the last one. Corners are rounded
-    // to the nearest of `steps` places in a texel, kSteps or fine_steps(). Errors: unsupported, as described in mesh.h.
-    static Result<CoverageMap> make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows = 1,
-                                    std::int64_t steps = kSteps);
-    // As many as a map of this extent can have: rays through tiny triangles start nearer to where they should.
-    [[nodiscard]] static std::int64_t fine_steps(Extent extent);
+    // `gutter` is its width in texels. Strips have a multiple of `rows` rows, except the last one. Errors: unsupported,
+    // as described in mesh.h.
+    static Result<CoverageMap> make(const MeshPart& part, int uv_set, Extent extent, int gutter, int rows = 1);
 
     [[nodiscard]] int strip_rows() const { return strip_rows_; }
     [[nodiscard]] int strips() const { return (extent_.height + strip_rows_ - 1) / strip_rows_; }
@@ -43,7 +38,7 @@ public:
 private:
     struct Placed {
         std::int32_t triangle;
-        std::array<std::int64_t, 3> x, y;  // in steps_ a texel, moved by whole repeats
+        std::array<std::int64_t, 3> x, y;  // in kSteps a texel, moved by whole repeats
     };
     struct Box {
         int left, right, top, bottom;  // texels, right and bottom included
@@ -59,7 +54,6 @@ private:
     Result<void> add(const Placed& placed, std::size_t triangles);
 
     Extent extent_;
-    std::int64_t steps_ = kSteps;
     int gutter_ = 0;
     int strip_rows_ = 1;
     std::int64_t tests_ = 0;    // of a texel against a triangle
