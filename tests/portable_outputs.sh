@@ -31,6 +31,7 @@ done
     made astc-best bake-normals hemisphere.png --format astc-4x4 --container astc --effort best
     made rdo bake-normals $heights --format bc5 --container ktx2 --rdo-mean 0.5
     made eac bake-normals waves.png --format eac-rg11 --container ktx2
+    made rdo-astc bake-normals waves.png --format astc-6x6 --container astc --rdo-mean 0.5
 }
 maps="maps/bricks.png maps/dunes.png maps/hemisphere.png maps/waves.png"
 # shellcheck disable=SC2086
