@@ -15,7 +15,7 @@ test_packages=(
     libgtest-dev libgmock-dev libsquish-dev libosmesa6-dev libgl-dev
     astcenc libastcenc-dev imagemagick openimageio-tools python3-jsonschema python3-yaml libxml2-utils mandoc shellcheck
     dpkg-dev file git strace zsh fish assimp-utils nix-bin ruby
-    pybind11-dev python3-dev python3-numpy python3-pytest python3-pip
+    pybind11-dev python3-dev python3-numpy python3-pil python3-pytest python3-pip
 )
 # The browser takes 300 MB. Without it and GNU parallel, their tests report that they were skipped.
 # shellcheck disable=SC2034
