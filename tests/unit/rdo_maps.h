@@ -8,7 +8,8 @@
 #include <random>
 #include <vector>
 
-#include <tex/types.h>
+#include <gtest/gtest.h>
+#include <tex/pack.h>
 
 namespace tex {
 
@@ -69,6 +70,24 @@ inline NormalMap rim(Extent extent) {
         }
     }
     return map;
+}
+
+// The promise of RdoOptions{0.5, 4}, of the angles before and after, and what the report says of them. `rounding` is
+// that of means.
+inline void expect_promise(const RdoReport& report, const std::vector<double>& plain, const std::vector<double>& angles,
+                           double rounding) {
+    constexpr double kRounding = 0.02;  // the library computes in float
+    EXPECT_LE(mean_of(angles), mean_of(plain) + 0.5 + rounding);
+    double most_raised = 0.0;
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+        EXPECT_LE(angles[k], std::max(plain[k], 4.0) + kRounding) << k;
+        if (angles[k] > plain[k] + kRounding) most_raised = std::max(most_raised, angles[k]);
+    }
+    EXPECT_NEAR(report.plain_mean, mean_of(plain), rounding);
+    EXPECT_NEAR(report.mean, mean_of(angles), rounding);
+    EXPECT_LE(report.most_growth, 0.5);
+    EXPECT_LE(report.most_raised, 4.0);
+    EXPECT_GE(report.most_raised, most_raised - kRounding);
 }
 
 }  // namespace tex

@@ -52,8 +52,9 @@ void mix_corners(const CornerVectors& corners, VectorArrays<const double> weight
 bool mix_directions(const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
                     VectorArrays<double> directions);
 
-// Every place has corners of its own: normals[3 * corner + axis] is an array. They are normalised before and after
-// they are mixed. Sums without length become (0, 0, 0); returns whether there are none.
+// The same for places that each have a triangle of their own: normals[3 * corner + axis][k] belongs to place k. Normals
+// are normalised before and after they are mixed. A sum without length becomes (0, 0, 0). Returns whether all sums have
+// a length.
 bool mix_normals(const float* const normals[9], VectorArrays<const double> weights, std::size_t count,
                  VectorArrays<double> units);
 
