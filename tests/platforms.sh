@@ -35,9 +35,9 @@ make_root() {
 
 # Clones HEAD into the root, or brings the clone there up to date; files that are the same keep their times.
 clone() {
-    local tree=$root/work/libtex
+    local tree=$root/tree/libtex
     if [ ! -d "$tree" ]; then
-        mkdir -p "$root/work"
+        mkdir -p "$root/tree"
         git clone -q --no-hardlinks . "$tree"
     fi
     git -C "$tree" fetch -q "$PWD" HEAD
@@ -46,7 +46,7 @@ clone() {
 
 # inside SCRIPT [ARGUMENT...]: runs a script in the root's clone. The mounts end with it.
 inside() {
-    mkdir -p "$root/work/shared" "$root/ccache" "$ccache"
+    mkdir -p "$root/tree/shared" "$root/ccache" "$ccache"
     # shellcheck disable=SC2016  # expanded in the shell that has the mounts
     unshare --mount --pid --fork --kill-child bash -euc '
         root=$1 ccache=$2 shared=$3
@@ -55,11 +55,11 @@ inside() {
         mount --rbind /sys "$root/sys"
         mount -t tmpfs tmpfs "$root/tmp"
         mount --bind "$ccache" "$root/ccache"
-        if [ -d "$shared" ]; then mount --bind "$shared" "$root/work/shared"; else rmdir "$root/work/shared"; fi
-        exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 CCACHE_DIR=/ccache CCACHE_BASEDIR=/work \
+        if [ -d "$shared" ]; then mount --bind "$shared" "$root/tree/shared"; else rmdir "$root/tree/shared"; fi
+        exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 CCACHE_DIR=/ccache CCACHE_BASEDIR=/tree \
             CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime \
             CMAKE_CXX_COMPILER_LAUNCHER=ccache CTEST_PARALLEL_LEVEL="$(nproc)" CMAKE_BUILD_PARALLEL_LEVEL="$(nproc)" \
-            chroot "$root" bash -euc "cd /work/libtex; $4" "${@:4}"
+            chroot "$root" bash -euc "cd /tree/libtex; $4" "${@:4}"
     ' inside "$root" "$ccache" "$PWD/../shared" "$@"
 }
 
@@ -79,10 +79,10 @@ for release in "${releases[@]}"; do
     [ "$release" != sid ] || continue
     echo "=== $release: tests/run.sh $*"
     results=build/platforms.xml
-    rm -f "$root/work/libtex/$results"
+    rm -f "$root/tree/libtex/$results"
     # shellcheck disable=SC2016
     inside 'tests/run.sh --output-junit "$PWD/$1" "${@:2}"' "$results" "$@" || true
-    file=$root/work/libtex/$results
+    file=$root/tree/libtex/$results
     [ -e "$file" ] || { failed=$((failed + 1)); continue; }
     failures=$(attribute failures "$file")
     left=$(($(attribute skipped "$file") + $(attribute disabled "$file")))
