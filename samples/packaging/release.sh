@@ -62,7 +62,7 @@ if [ "$source_only" = no ]; then
     samples/packaging/windows.sh
     mv build/portable*/libtex-*.tar.xz build/portable/tex-*.whl build/windows/libtex-*.zip "$work/made"
     if command -v abidw >/dev/null; then
-        abidw --headers-dir libtex/include --out-file "$work/made/libtex-$version.abi" build/debian/libtex.so
+        (cd "$here" && tests/abi.sh --write "$work/made/libtex-$version.abi")
     fi
     cd "$here"
     mapfile -t built < <(cd "$work/made" && find . -type f ! -name "$archive" -printf '%P\n' | sort)
