@@ -15,7 +15,7 @@ namespace {
 
 using namespace tex;
 
-class MipNormals : public cli::Repacker {
+class MipNormals : public cli::PackCommand {
 public:
     explicit MipNormals(const cli::ProgramRow& row);
 
@@ -30,7 +30,7 @@ private:
     cli::RoughnessOptions roughness_;
 };
 
-MipNormals::MipNormals(const cli::ProgramRow& row) : Repacker(row) {
+MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("normal maps; - is standard input");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);

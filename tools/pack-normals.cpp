@@ -14,7 +14,7 @@ namespace {
 
 using namespace tex;
 
-class PackNormals : public cli::Repacker {
+class PackNormals : public cli::PackCommand {
 public:
     explicit PackNormals(const cli::ProgramRow& row);
 
@@ -34,7 +34,7 @@ private:
     cli::MipChainOptions mips_;
 };
 
-PackNormals::PackNormals(const cli::ProgramRow& row) : Repacker(row) {
+PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("normal maps, and glTF models with their maps; - is standard input");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");

@@ -10,7 +10,7 @@ namespace {
 
 using namespace tex;
 
-class ScaleNormals : public cli::Repacker {
+class ScaleNormals : public cli::PackCommand {
 public:
     explicit ScaleNormals(const cli::ProgramRow& row);
 
@@ -33,7 +33,7 @@ private:
     ScaleMode mode_ = ScaleMode::slope;
 };
 
-ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : Repacker(row) {
+ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.usage("NORMALS... -o FILE --scale S");
     command.usage("NORMALS... --out-dir DIR --scale S");
     command.input("NORMALS...", "normal maps; - is standard input");

@@ -15,7 +15,7 @@ namespace {
 
 using namespace tex;
 
-class UnpackNormals : public cli::Repacker {
+class UnpackNormals : public cli::PackCommand {
 public:
     explicit UnpackNormals(const cli::ProgramRow& row);
 
@@ -37,7 +37,7 @@ private:
     cli::OtherFiles apart_;
 };
 
-UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : Repacker(row) {
+UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("textures or pictures of normals; - is standard input");
     cli::Row& option =
         command.option("--level", "N", "the level to unpack, from 0, or all", [this](const std::string& text) {

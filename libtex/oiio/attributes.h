@@ -65,7 +65,7 @@ void describe(const Texture& texture, const std::optional<Swizzle>& pixels, Othe
 
 // Calls body(), which returns true or has called errorfmt() of `plugin`. An exception becomes an error, too.
 template <class Plugin, class Body>
-bool guarded(const Plugin& plugin, Body&& body) noexcept {
+bool no_throw(const Plugin& plugin, Body&& body) noexcept {
     try {
         try {
             return body();

@@ -123,7 +123,7 @@ bool Input::valid_file(const std::string& name) const {
 bool Input::open(const std::string& name, ImageSpec& spec) { return open(name, spec, {}); }
 
 bool Input::open(const std::string& name, ImageSpec& spec, const ImageSpec& config) {
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         close();
         const Result<void> loaded = load(name, config);
         if (!loaded) {
@@ -233,7 +233,7 @@ bool Input::seek_subimage(int subimage, int level) {
 
 bool Input::read_native_scanline(int subimage, int level, int y, int, void* data) {
     const lock_guard lock(*this);
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         if (!seek_subimage(subimage, level)) {
             errorfmt("{}: there is no level {}", path_, level);
             return false;

@@ -100,7 +100,7 @@ bool Output::report(const Result<void>& done) {
 }
 
 bool Output::open(const std::string& name, const ImageSpec& spec, OpenMode mode) {
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         switch (mode) {
             case Create:
                 if (!close()) return false;
@@ -208,7 +208,7 @@ bool Output::next_is(std::int64_t part) {
 }
 
 bool Output::write_scanline(int y, int z, TypeDesc format, const void* data, OIIO::stride_t xstride) {
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         if (!next_is(z == m_spec.z ? std::int64_t{y} - m_spec.y : -1)) return false;
         return copy_to_image_buffer(m_spec.x, m_spec.x + m_spec.width, y, y + 1, z, z + 1, format, data, xstride,
                                     OIIO::AutoStride, OIIO::AutoStride, sent().data(), TypeDesc::UNKNOWN);
@@ -217,7 +217,7 @@ bool Output::write_scanline(int y, int z, TypeDesc format, const void* data, OII
 
 bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, OIIO::stride_t xstride,
                         OIIO::stride_t ystride, OIIO::stride_t zstride) {
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         if (m_spec.tile_width < 1 || m_spec.tile_height < 1)
             return report(mistake(name_, "a tile of a picture without tiles"));
         const std::int64_t across = (m_spec.width + m_spec.tile_width - 1) / m_spec.tile_width;
@@ -296,7 +296,7 @@ Result<void> Output::finish_level() {
 }
 
 bool Output::close() {
-    return guarded(*this, [&] {
+    return no_throw(*this, [&] {
         if (open_) report(finish());
         open_ = false;
         pixels_ = {};

@@ -12,7 +12,7 @@
 #include "rows/bake_rows.h"
 #include "rows/usable.h"
 #include "stream/slope_collector.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -25,7 +25,7 @@ Result<void> validate(const BakeOptions& options) {
 
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {
     const Extent extent = field.height.extent();
-    return guarded(execution, [&]() -> Result<NormalMap> {
+    return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(extent, "the height field"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (!std::isfinite(field.bumpiness_x) || !std::isfinite(field.bumpiness_y))

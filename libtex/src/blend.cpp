@@ -11,7 +11,7 @@
 #include "rows/other_rows.h"
 #include "rows/usable.h"
 #include "stream/placed_map.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -72,7 +72,7 @@ Result<void> validate(const Layer& layer) {
 
 Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,
                         const Execution& execution) {
-    return guarded(execution, [&]() -> Result<NormalMap> {
+    return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         for (const Layer& layer : layers) {

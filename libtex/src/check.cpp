@@ -29,7 +29,7 @@
 #include "formats/level_planes.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -111,56 +111,56 @@ bool has_more_data(const Stored& stored, const TexelCounts& counts) {
 }
 
 // Finds the background, and counts again without it.
-Result<void> leave_out_background(Subject& subject) {
-    const TexelCounts& counts = subject.counts;
+Result<void> leave_out_background(CheckContext& context) {
+    const TexelCounts& counts = context.counts;
     const double off = std::max(
         {counts.share(Property::off_length), counts.share(Property::null_vector), counts.share(Property::beyond_unit)});
     // Black and white that were normalised are unit vectors; a map with many of them leans.
     constexpr double kLean = 0.02;
     const double lean = std::max(std::abs(counts.mean_x), std::abs(counts.mean_y));
-    if (subject.constant || (off < kLeastBackground && lean < kLean)) return {};
-    auto background = find_background(subject.stored, subject.execution);
+    if (context.constant || (off < kLeastBackground && lean < kLean)) return {};
+    auto background = find_background(context.stored, context.execution);
     if (!background) return background.error();
-    subject.background = std::move(*background);
-    if (!subject.background) return {};
-    auto others = count_texels(subject.stored, subject.execution, &*subject.background);
+    context.background = std::move(*background);
+    if (!context.background) return {};
+    auto others = count_texels(context.stored, context.execution, &*context.background);
     if (!others) return others.error();
-    subject.counts = *others;
+    context.counts = *others;
     return {};
 }
 
-Result<void> measure(Subject& subject) {
+Result<void> measure(CheckContext& context) {
     PlaneNeeds needs;
     needs.share_constants = true;
-    auto image = decode_planes(subject.texture, subject.texture.levels.front(), needs, subject.execution);
+    auto image = decode_planes(context.texture, context.texture.levels.front(), needs, context.execution);
     if (!image) return image.error();
-    subject.base = std::move(*image);
-    const auto swizzle = guess_swizzle(subject.texture, subject.execution);
+    context.base = std::move(*image);
+    const auto swizzle = guess_swizzle(context.texture, context.execution);
     if (!swizzle) return swizzle.error();
-    subject.stored = {&subject.base, *swizzle,
-                      stores_signed(subject.base, *swizzle, range_of(subject.texture.normal_encoding, {})),
-                      format_info(subject.texture.format).has_blocks()};
-    const Stored& stored = subject.stored;
-    subject.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
-    if (!subject.has_vectors) return {};
-    auto counts = count_texels(stored, subject.execution);
+    context.stored = {&context.base, *swizzle,
+                      stores_signed(context.base, *swizzle, range_of(context.texture.normal_encoding, {})),
+                      format_info(context.texture.format).has_blocks()};
+    const Stored& stored = context.stored;
+    context.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
+    if (!context.has_vectors) return {};
+    auto counts = count_texels(stored, context.execution);
     if (!counts) return counts.error();
-    subject.counts = *counts;
-    subject.constant = same_everywhere(subject.counts, static_cast<int>(subject.base.planes.size()));
-    if (auto done = leave_out_background(subject); !done) return done;
+    context.counts = *counts;
+    context.constant = same_everywhere(context.counts, static_cast<int>(context.base.planes.size()));
+    if (auto done = leave_out_background(context); !done) return done;
     const Extent extent = stored.extent();
-    subject.sampled_ok = !subject.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
-    if (!subject.sampled_ok) return {};
-    auto curl = measure_curl(stored, subject.execution);
+    context.sampled_ok = !context.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
+    if (!context.sampled_ok) return {};
+    auto curl = measure_curl(stored, context.execution);
     if (!curl) return curl.error();
-    subject.curl = std::move(*curl);
+    context.curl = std::move(*curl);
     // The rules ask how much of the map holds normals, of what ought to.
     const auto texels = static_cast<double>(extent.texels());
-    subject.curl.usable =
-        std::min(1.0, subject.curl.usable * texels / std::max(1.0, static_cast<double>(subject.counts.texels)));
-    subject.y.correlation = subject.curl.correlation;
-    subject.y.confidence = subject.curl.confidence;
-    subject.y.y = clear_y(subject.curl);
+    context.curl.usable =
+        std::min(1.0, context.curl.usable * texels / std::max(1.0, static_cast<double>(context.counts.texels)));
+    context.y.correlation = context.curl.correlation;
+    context.y.confidence = context.curl.confidence;
+    context.y.y = clear_y(context.curl);
     return {};
 }
 
@@ -219,37 +219,37 @@ Result<void> validate(const CheckOptions& options) {
 
 Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options,
                           const Execution& execution) {
-    return guarded([&]() -> Result<CheckReport> {
+    return no_throw([&]() -> Result<CheckReport> {
         if (auto usable = check_usable(texture); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
-        Subject subject{.texture = texture, .options = options, .execution = execution, .file = file};
-        if (auto done = measure(subject); !done) return done.error();
+        CheckContext context{.texture = texture, .options = options, .execution = execution, .file = file};
+        if (auto done = measure(context); !done) return done.error();
         Findings findings(options);
-        check_file_rules(subject, findings);
-        check_value_rules(subject, findings);
-        if (auto done = check_other_rules(subject, findings); !done) return done.error();
-        if (auto done = check_damage_rules(subject, findings); !done) return done.error();
-        if (auto done = check_sign_rules(subject, findings); !done) return done.error();
-        if (auto done = check_field_rules(subject, findings); !done) return done.error();
-        check_convention_rules(subject, findings);
-        if (auto done = check_mip_rules(subject, findings); !done) return done.error();
+        check_file_rules(context, findings);
+        check_value_rules(context, findings);
+        if (auto done = check_other_rules(context, findings); !done) return done.error();
+        if (auto done = check_damage_rules(context, findings); !done) return done.error();
+        if (auto done = check_sign_rules(context, findings); !done) return done.error();
+        if (auto done = check_field_rules(context, findings); !done) return done.error();
+        check_convention_rules(context, findings);
+        if (auto done = check_mip_rules(context, findings); !done) return done.error();
         CheckReport report;
-        report.pair = check_pair_rules(subject, findings);
-        if (auto seams = check_mesh_rules(subject, findings)) {
+        report.pair = check_pair_rules(context, findings);
+        if (auto seams = check_mesh_rules(context, findings)) {
             report.seams = *seams;
         } else {
             return seams.error();
         }
-        check_model_rules(subject, findings);
+        check_model_rules(context, findings);
         report.file = file;
         report.findings = findings.take(report.explained);
         report.format = texture.format;
-        report.swizzle = subject.stored.swizzle;
+        report.swizzle = context.stored.swizzle;
         report.extent = texture.extent();
         report.levels = static_cast<int>(texture.levels.size());
-        report.more_data = subject.has_vectors && has_more_data(subject.stored, subject.counts);
-        report.y = subject.y;
-        if (options.mesh != nullptr && subject.has_vectors) report.y_on_mesh = y_on_mesh(subject);
+        report.more_data = context.has_vectors && has_more_data(context.stored, context.counts);
+        report.y = context.y;
+        if (options.mesh != nullptr && context.has_vectors) report.y_on_mesh = y_on_mesh(context);
         return report;
     });
 }
@@ -285,7 +285,7 @@ void add_not_examined(const Error& error, const CheckOptions& options, CheckRepo
 
 Result<CheckReport> check_map(const Model& model, const ModelMap& map, const ModelCheckOptions& options,
                               const ReadOptions& read, const Execution& execution) {
-    return guarded([&]() -> Result<CheckReport> {
+    return no_throw([&]() -> Result<CheckReport> {
         CheckOptions checks = options.checks;
         if (auto valid = validate(checks); !valid) return valid.error();
         if (!checks.require.y) {
@@ -323,7 +323,7 @@ Result<CheckReport> check_map(const Model& model, const ModelMap& map, const Mod
 
 Result<std::vector<CheckReport>> check_model(const std::string& path, const ModelCheckOptions& options,
                                              const ReadOptions& read, const Execution& execution) {
-    return guarded([&]() -> Result<std::vector<CheckReport>> {
+    return no_throw([&]() -> Result<std::vector<CheckReport>> {
         if (auto valid = validate(options.checks); !valid) return valid.error();
         MeshReadOptions how;
         how.reader = read;
@@ -346,7 +346,7 @@ Result<std::vector<CheckReport>> check_model(const std::string& path, const Mode
 
 Result<CheckReport> check_file(const std::string& path, const CheckOptions& options, const ReadOptions& read,
                                const Execution& execution) {
-    return guarded([&]() -> Result<CheckReport> {
+    return no_throw([&]() -> Result<CheckReport> {
         if (auto valid = validate(options); !valid) return valid.error();
         const auto texture = read_texture(path, read);
         if (!texture) return failed_report(path, options, texture.error());

@@ -7,14 +7,14 @@
 
 #include "color/color.h"
 #include "color/ocio.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
 const char* opencolorio_version() { return ocio_version(); }
 
 Result<Image> to_linear(Image image, const ColorOptions& options) {
-    return guarded([&]() -> Result<Image> {
+    return no_throw([&]() -> Result<Image> {
         const Result<LinearRows> rows =
             linear_rows(image.names, image.sample, image.bits, options.config, options.space);
         if (!rows) return rows.error();
@@ -32,7 +32,7 @@ Result<Image> to_linear(Image image, const ColorOptions& options) {
 }
 
 Result<std::vector<std::string>> color_files(const ColorOptions& options) {
-    return guarded([&] { return files_of_conversion(options.config, options.space); });
+    return no_throw([&] { return files_of_conversion(options.config, options.space); });
 }
 
 }  // namespace tex::inline v1

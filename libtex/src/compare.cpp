@@ -15,7 +15,7 @@
 #include "mesh/coverage.h"
 #include "rows/usable.h"
 #include "stream/angle_summary.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -78,7 +78,7 @@ std::int64_t measure_strip(Angles& angles, Extent extent, int first, const std::
 }  // namespace
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Comparison> {
+    return no_throw(execution, [&]() -> Result<Comparison> {
         if (auto usable = check_pair(a, b); !usable) return usable.error();
         Angles angles(a, b);
         const auto body = [&](int begin, int end) {
@@ -94,7 +94,7 @@ Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const Executi
 
 Result<Comparison> compare(const NormalMap& a, const NormalMap& b, const MeshPart& part, int uv_set,
                            const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Comparison> {
+    return no_throw(execution, [&]() -> Result<Comparison> {
         if (auto usable = check_pair(a, b); !usable) return usable.error();
         if (auto usable = check_part(part); !usable) return usable.error();
         if (uv_set < 0 || static_cast<std::size_t>(uv_set) >= part.uvs.size())

@@ -11,11 +11,11 @@
 #include "files/atomic_file.h"
 #include "files/input_file.h"
 #include "files/unfinished_files.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/reader/reader.h"
 #include "formats/texture_rows.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -42,7 +42,7 @@ bool lists(std::string_view list, const std::string& extension) {
 }
 
 // The compressed form of the file `bytes`.
-Result<std::vector<std::byte>> compressed(const Codec& codec, const FileLayout& layout, int level,
+Result<std::vector<std::byte>> compressed(const FileType& type, const FileLayout& layout, int level,
                                           const std::vector<std::byte>& bytes) {
     std::vector<std::byte> packed;
     const auto fetch = [&](std::uint64_t offset, std::size_t count) -> Result<std::vector<std::byte>> {
@@ -54,7 +54,7 @@ Result<std::vector<std::byte>> compressed(const Codec& codec, const FileLayout& 
         std::copy(source.begin(), source.end(), packed.begin() + static_cast<std::ptrdiff_t>(offset));
         return {};
     };
-    if (const auto size = codec.compress(layout, level, fetch, write); !size) return size.error();
+    if (const auto size = type.compress(layout, level, fetch, write); !size) return size.error();
     return packed;
 }
 
@@ -68,17 +68,17 @@ std::optional<Container> container_of(std::string_view path) {
     return std::nullopt;
 }
 
-bool can_hold(Container container, Format format) { return codec_of(container).holds(format); }
+bool can_hold(Container container, Format format) { return file_type_of(container).holds(format); }
 
 bool can_hold(Container container, Encoding encoding) { return can_hold(container, encoding_info(encoding).format); }
 
 bool can_hold_blocks(Container container) { return can_hold(container, Encoding::dxt5nm); }
 
-bool can_hold_levels(Container container) { return codec_of(container).has_levels; }
+bool can_hold_levels(Container container) { return file_type_of(container).has_levels; }
 
-bool can_compress(Container container) { return codec_of(container).compress != nullptr; }
+bool can_compress(Container container) { return file_type_of(container).compress != nullptr; }
 
-Encoding default_encoding(Container container) { return codec_of(container).default_encoding; }
+Encoding default_encoding(Container container) { return file_type_of(container).default_encoding; }
 
 Result<void> validate(const WriteOptions& options) {
     if (options.zstd < 0 || options.zstd > kHighestZstdLevel) return bad_option("zstd: must be from 0 to 22");
@@ -89,21 +89,21 @@ Result<void> validate(const WriteOptions& options) {
 
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,
                                            const Execution& execution) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         if (const Result<void> usable = check_usable(texture); !usable) return usable.error();
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
-        const Codec& codec = codec_of(container);
-        if (is_bptc(texture.format)) return check_holds(codec, texture.format, {}).error();
-        if (codec.layout != nullptr || options.zstd != 0) {
-            if (const Result<void> held = check_holds(codec, texture.format, options); !held) return held.error();
+        const FileType& type = file_type_of(container);
+        if (is_bptc(texture.format)) return check_holds(type, texture.format, {}).error();
+        if (type.layout != nullptr || options.zstd != 0) {
+            if (const Result<void> held = check_holds(type, texture.format, options); !held) return held.error();
             TextureHead head = head_of(texture);
-            if (!codec.has_levels) head.levels = 1;
-            const FileLayout layout = codec.layout(head, options);
+            if (!type.has_levels) head.levels = 1;
+            const FileLayout layout = type.layout(head, options);
             std::vector<std::byte> bytes = assemble(texture, layout);
-            if (options.zstd > 0) return compressed(codec, layout, options.zstd, bytes);
+            if (options.zstd > 0) return compressed(type, layout, options.zstd, bytes);
             return bytes;
         }
-        if (codec.open_target != nullptr) return encode_rows(codec.open_target, texture, codec.has_levels, execution);
+        if (type.open_target != nullptr) return encode_rows(type.open_target, texture, type.has_levels, execution);
         return encode_with_reader(texture, container, options);
     });
 }
@@ -126,7 +126,7 @@ Result<void> write_file(const std::string& path, const std::vector<std::byte>& b
 void remove_unfinished_files() noexcept { UnfinishedFile::remove_all(); }
 
 Result<Texture> read_texture(const std::string& path, const ReadOptions& options) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         Result<InputFile> file = open_input(path, options);
         if (!file) return file.error();
         return read_texture(*file, options);
@@ -134,9 +134,9 @@ Result<Texture> read_texture(const std::string& path, const ReadOptions& options
 }
 
 Result<Texture> read_texture(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options) {
-    return guarded([&]() -> Result<Texture> {
-        if (const Codec& codec = codec_for(bytes); codec.parse != nullptr)
-            return load_texture(codec.parse, bytes.data(), bytes.size(), name, options);
+    return no_throw([&]() -> Result<Texture> {
+        if (const FileType& type = file_type_for(bytes); type.parse != nullptr)
+            return load_texture(type.parse, bytes.data(), bytes.size(), name, options);
         Result<InputFile> file = InputFile::from_memory(name, {bytes.begin(), bytes.end()});
         if (!file) return file.error();
         return read_texture(*file, options);

@@ -14,7 +14,7 @@
 #include "rows/other_rows.h"
 #include "rows/usable.h"
 #include "surface/nearest.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -161,7 +161,7 @@ Result<void> pad(ConvertedMap& result, std::int64_t width, const Execution& exec
 Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Direction direction,
                              const ConvertOptions& options, const Execution& execution) {
     const int padding = options.padding, subsamples = options.subsamples;
-    return guarded(execution, [&]() -> Result<ConvertedMap> {
+    return no_throw(execution, [&]() -> Result<ConvertedMap> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (auto sound = check_part(space.part); !sound) return sound.error().of(space.file);

@@ -11,7 +11,7 @@
 #include "kernels/stored.h"
 #include "rows/curvature_rows.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -55,7 +55,7 @@ Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options
 }  // namespace
 
 Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Curvature> {
+    return no_throw(execution, [&]() -> Result<Curvature> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         return measured(map, options, execution);
     });

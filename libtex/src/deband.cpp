@@ -7,12 +7,12 @@
 
 #include "rows/usable.h"
 #include "surface/debander.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
 Result<DebandedField> deband(HeightField field, Deband when, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<DebandedField> {
+    return no_throw(execution, [&]() -> Result<DebandedField> {
         if (auto usable = check_usable(field.height.extent(), "the height field"); !usable) return usable.error();
         auto report = deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {});
         if (!report) return report.error();

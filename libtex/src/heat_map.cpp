@@ -8,7 +8,7 @@
 #include "preview/colormap.h"
 #include "preview/legend.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -30,7 +30,7 @@ void copy(const Level& picture, Image& image, int top) {
 }  // namespace
 
 Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Image> {
+    return no_throw(execution, [&]() -> Result<Image> {
         if (auto usable = check_usable(degrees.extent(), "the map"); !usable) return usable.error();
         if (!(full_scale > 0.0 && full_scale <= 180.0))
             return bad_option("full_scale: must be above 0 and at most 180");
@@ -60,7 +60,7 @@ Result<Image> heat_map(const Plane<float>& degrees, double full_scale, const Exe
 }
 
 Result<Plane<float>> largest_of_cells(const Plane<float>& degrees, int side) {
-    return guarded([&]() -> Result<Plane<float>> {
+    return no_throw([&]() -> Result<Plane<float>> {
         const Extent extent = degrees.extent();
         if (auto usable = check_usable(extent, "the map"); !usable) return usable.error();
         if (side < 1) return bad_option("side: must be 1 or more");

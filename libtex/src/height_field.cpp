@@ -17,7 +17,7 @@
 #include "rows/usable.h"
 #include "surface/debander.h"
 #include "surface/nearest.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -84,7 +84,7 @@ Result<void> validate(const HeightOptions& options) {
 }
 
 Result<PictureHeights> height_field(const Image& image, const HeightOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<PictureHeights> {
+    return no_throw(execution, [&]() -> Result<PictureHeights> {
         if (auto usable = check_usable(image); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         const PictureFacts facts = facts_of(image);

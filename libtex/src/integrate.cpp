@@ -17,7 +17,7 @@
 #include "rows/usable.h"
 #include "stream/angle_summary.h"
 #include "surface/integrator.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -82,7 +82,7 @@ Result<void> validate(const IntegrateOptions& options) {
 }
 
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Integration> {
+    return no_throw(execution, [&]() -> Result<Integration> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         Integration result;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mesh/vectors.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -92,7 +92,7 @@ Result<void> transform(MeshPart& part, const MeshNode& node) {
 }  // namespace
 
 Result<void> check_part(const MeshPart& part) {
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         const std::size_t vertices = part.positions.size();
         if (part.indices.empty()) return bad("has no triangles");
         if (part.indices.size() % 3 != 0) {
@@ -122,7 +122,7 @@ Result<void> check_part(const MeshPart& part) {
 }
 
 Result<MeshPart> in_scene(MeshPart part, const MeshNode& node) {
-    return guarded([&]() -> Result<MeshPart> {
+    return no_throw([&]() -> Result<MeshPart> {
         if (auto sound = check_part(part); !sound) return sound.error();
         if (const auto done = transform(part, node); !done) return done.error();
         return std::move(part);

@@ -13,7 +13,7 @@
 #include "formats/reader/reader_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/obj.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -22,7 +22,7 @@ Result<Mesh> parse_other(const std::string& path, const std::vector<std::byte>& 
     const auto glb = read_with_mesh_reader(path, bytes, options.reader);
     if (!glb) return glb.error();
     const LoadBeside nothing = [](const std::string&) -> Result<std::vector<std::byte>> {
-        return Error{ErrorCode::bad_data, {}, "the mesh reader handed over nonsense"};
+        return Error{ErrorCode::bad_data, {}, "the mesh reader returned invalid data"};
     };
     auto mesh = parse_gltf(*glb, nothing, {}, options.colors);
     if (!mesh) return mesh;
@@ -49,7 +49,7 @@ Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes,
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
-    return guarded([&]() -> Result<Mesh> {
+    return no_throw([&]() -> Result<Mesh> {
         const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
         const LoadBeside load = [&](const std::string& name) -> Result<std::vector<std::byte>> {
@@ -63,7 +63,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
 }
 
 Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshReadOptions& options) {
-    return guarded([&]() -> Result<std::vector<std::string>> {
+    return no_throw([&]() -> Result<std::vector<std::string>> {
         std::vector<std::string> files = {path};
         std::error_code error;
         if (path == "-" || (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))

@@ -14,7 +14,7 @@
 #include "mesh/uv_tiles.h"
 #include "mesh/uv_transform.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -300,7 +300,7 @@ void drop_empty(std::vector<SelectedPiece>& pieces, std::size_t triangles) {
 }  // namespace
 
 Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection, const Execution& execution) {
-    return guarded([&]() -> Result<SelectedPart> {
+    return no_throw([&]() -> Result<SelectedPart> {
         Choice choice;
         if (const auto chosen = choose_parts(mesh, selection, choice); !chosen) return chosen.error();
         if (const auto chosen = choose_attributes(mesh, selection, choice); !chosen) return chosen.error();
@@ -309,7 +309,7 @@ Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selectio
 }
 
 Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
-    return guarded([&]() -> Result<std::vector<MeshPart>> {
+    return no_throw([&]() -> Result<std::vector<MeshPart>> {
         if (mesh.nodes.empty()) return std::move(mesh.parts);
         std::vector<MeshPart> parts;
         for (MeshPart& part : mesh.parts) {
@@ -330,7 +330,7 @@ Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
 }
 
 Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
-    return guarded([&]() -> Result<SelectedPart> {
+    return no_throw([&]() -> Result<SelectedPart> {
         if (auto sound = check_part(selected.part); !sound) return sound.error();
         if (tile < 1001) return bad_option("tile: must be 1001 or more");
         SelectedPart cut = selected;
@@ -367,7 +367,7 @@ Result<SelectedPart> in_tile(const SelectedPart& selected, int tile) {
 }
 
 Result<UvTiles> tiles_of(const SelectedPart& selected) {
-    return guarded([&]() -> Result<UvTiles> {
+    return no_throw([&]() -> Result<UvTiles> {
         if (auto sound = check_part(selected.part); !sound) return sound.error();
         UvTiles found;
         std::set<int> tiles;

@@ -17,7 +17,7 @@
 #include "rows/mip_rows.h"
 #include "rows/usable.h"
 #include "stream/other_levels.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -113,7 +113,7 @@ Result<void> validate(const MipOptions& options) {
 }
 
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<MipChain> {
+    return no_throw(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         const Extent extent = base.extent();

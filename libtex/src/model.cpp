@@ -13,13 +13,13 @@
 #include "files/beside.h"
 #include "files/input_file.h"
 #include "files/path_names.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/reader/reader_mesh.h"
 #include "formats/texture_rows.h"
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
 #include "mesh/gltf_materials.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -87,14 +87,14 @@ bool is_model(const std::string& path) {
     if (path == "-" || !std::filesystem::is_regular_file(path, error)) return false;
     const auto file = InputFile::open(path);
     if (!file) return false;
-    const Codec& codec = codec_for(file->head());
-    return is_gltf(file->head()) || (is_called_model(path) && codec.magic.empty() && codec.claims == nullptr);
+    const FileType& type = file_type_for(file->head());
+    return is_gltf(file->head()) || (is_called_model(path) && type.magic.empty() && type.claims == nullptr);
 }
 
 namespace {
 
 Result<Model> read_model(const std::string& path, const MeshReadOptions& options, Geometry geometry) {
-    return guarded([&]() -> Result<Model> {
+    return no_throw([&]() -> Result<Model> {
         if (path == "-") return Error{ErrorCode::unsupported, path, "a model cannot come from standard input"};
         const auto bytes = read_at_most(path, options.max_bytes);
         if (!bytes) return bytes.error();
@@ -122,7 +122,7 @@ std::string map_name(const Model& model, const ModelMap& map) {
 }
 
 Result<Texture> read_map(const Model& model, const ModelMap& map, const ReadOptions& options) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         const ModelImage* const image = image_of(model, map);
         if (image == nullptr) return Error{ErrorCode::bad_data, model.file, "its texture has no image"};
         const std::string name = model.file + ": " + image->name;

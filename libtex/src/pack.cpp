@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "kernels/encode.h"
 #include "rows/other_rows.h"
 #include "rows/pack_rows.h"
 #include "rows/rdo_rows.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -75,7 +75,7 @@ Result<void> validate(const PackOptions& options) {
 }
 
 Result<PackedTexture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<PackedTexture> {
+    return no_throw(execution, [&]() -> Result<PackedTexture> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (const NormalMap& base = chain.levels.front(); !base.blue.empty() && !base.length.empty())

@@ -8,7 +8,7 @@
 #include "stream/bake_stream.h"
 #include "stream/blend_stream.h"
 #include "stream/pack_stream.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
@@ -51,7 +51,7 @@ Result<void> validate(const BlendFileOptions& options) {
 
 Result<BakeFileReport> bake_file(const std::string& input, const std::string& output, Container container,
                                  const BakeFileOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<BakeFileReport> {
+    return no_throw([&]() -> Result<BakeFileReport> {
         if (auto valid = validate(options); !valid) return valid.error();
         Result<InputFile> file = open_input(input, options.read);
         if (!file) return file.error();
@@ -61,7 +61,7 @@ Result<BakeFileReport> bake_file(const std::string& input, const std::string& ou
 
 Result<PackFileReport> pack_file(const std::string& input, const std::string& output, Container container,
                                  const PackFileOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<PackFileReport> {
+    return no_throw([&]() -> Result<PackFileReport> {
         if (auto valid = validate(options); !valid) return valid.error();
         Result<InputFile> file = open_input(input, options.source.read);
         if (!file) return file.error();
@@ -75,7 +75,7 @@ Layer LayerFile::layer() const {
 
 Result<BlendFileReport> blend_file(const std::string& input, const std::string& output, Container container,
                                    const BlendFileOptions& options, const Execution& execution) {
-    return guarded([&]() -> Result<BlendFileReport> {
+    return no_throw([&]() -> Result<BlendFileReport> {
         if (auto valid = validate(options); !valid) return valid.error();
         return blend_stream(input, output, container, options, execution);
     });

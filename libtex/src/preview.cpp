@@ -15,7 +15,7 @@
 #include "preview/mesh_shows.h"
 #include "preview/surfaces.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -251,7 +251,7 @@ Result<void> validate(const PreviewOptions& options) {
 }
 
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Texture> {
+    return no_throw(execution, [&]() -> Result<Texture> {
         if (scene.map == nullptr) return bad("there is no map to show");
         if (auto usable = check_usable(*scene.map); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();

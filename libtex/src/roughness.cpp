@@ -12,9 +12,9 @@
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/usable.h"
+#include "stream/material_roughness.h"
 #include "stream/other_levels.h"
-#include "stream/own_roughness.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -25,7 +25,7 @@ Result<void> fill_base(const Plane<float>& own, const MipOptions& options, const
                        ProgressSpan span, Plane<float>& roughness, Plane<float>& alpha2) {
     const Extent extent = roughness.extent();
     const double middle = own.extent() == extent ? span.from : (span.from + span.to) / 2.0;
-    const auto rows = OwnRoughness::of(own, extent, options, execution, {span.from, middle});
+    const auto rows = MaterialRoughness::of(own, extent, options, execution, {span.from, middle});
     if (!rows) return rows.error();
     const auto fill = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) rows->row(j, roughness.row(j), alpha2.row(j));
@@ -80,7 +80,7 @@ Result<Texture> pack_chain(const RoughnessChain& chain, Format format, Effort ef
 
 Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<float>& roughness, RoughnessModel model,
                                              const MipOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<RoughnessChain> {
+    return no_throw(execution, [&]() -> Result<RoughnessChain> {
         if (auto usable = check_usable(base); !usable) return usable.error();
         if (auto usable = check_usable(roughness.extent(), "the roughness map"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
@@ -91,7 +91,7 @@ Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<
 Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
     constexpr Format kFormats[] = {Format::bc4_unorm, Format::eac_r11_unorm, Format::r8_unorm,
                                    Format::r16_unorm, Format::r16_float,     Format::r32_float};
-    return guarded(execution, [&]() -> Result<Texture> {
+    return no_throw(execution, [&]() -> Result<Texture> {
         if (chain.levels.empty()) return bad_option("the chain has no level");
         const bool is_single = std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
         if (!is_single && !encodes_astc(format)) {

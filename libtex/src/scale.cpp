@@ -8,7 +8,7 @@
 
 #include "kernels/scale.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -36,7 +36,7 @@ Result<void> check_scale(float scale) {
 }  // namespace
 
 Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<NormalMap> {
+    return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(map); !usable) return usable.error();
         if (auto valid = check_scale(scale); !valid) return valid.error();
         if (const auto scaled = scale_rows(map, scale, mode, execution, {}); !scaled) return scaled.error();
@@ -45,7 +45,7 @@ Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execut
 }
 
 Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<MipChain> {
+    return no_throw(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = check_scale(scale); !valid) return valid.error();
         double texels = 0.0;

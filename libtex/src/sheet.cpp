@@ -12,7 +12,7 @@
 #include "formats/png/apng.h"
 #include "formats/png/png.h"
 #include "preview/canvas.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -66,7 +66,7 @@ bool without_captions(const std::vector<Panel>& panels) {
 }  // namespace
 
 Result<Texture> picture_of(const Image& image) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         const Plane<float>* planes[3] = {};
         for (int c = 0; c < 3; ++c) {
             const int index = image.find(std::string(1, "RGB"[c]));
@@ -85,7 +85,7 @@ Result<Texture> picture_of(const Image& image) {
 }
 
 Result<std::vector<std::byte>> encode_picture(const Texture& picture) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         const Level& level = picture.levels.front();
         const auto count = static_cast<std::size_t>(level.extent.texels());
         const auto* bytes = reinterpret_cast<const std::uint8_t*>(level.bytes.data());
@@ -113,7 +113,7 @@ Result<std::vector<std::byte>> encode_picture(const Texture& picture) {
 }
 
 Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         if (panels.empty()) return Error{ErrorCode::bad_option, {}, "a sheet needs at least one picture"};
         if (columns <= 0) columns = columns_for(panels.size());
         columns = std::min(columns, static_cast<int>(panels.size()));
@@ -159,7 +159,7 @@ Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
 }
 
 Result<Texture> split_view(const Panel& left, const Panel& right) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         const Extent extent = left.picture.extent();
         if (extent != right.picture.extent())
             return Error{ErrorCode::bad_option, {}, "the two pictures differ in size"};
@@ -178,7 +178,7 @@ Result<Texture> split_view(const Panel& left, const Panel& right) {
 }
 
 Result<std::vector<std::byte>> encode_animation(const std::vector<Texture>& pictures, int frames_per_second) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         if (pictures.empty()) return Error{ErrorCode::bad_option, {}, "an animation needs at least one picture"};
         std::vector<std::vector<std::byte>> frames;
         for (const Texture& picture : pictures) {

@@ -7,7 +7,7 @@
 #include "stream/blend_stream.h"
 #include "stream/made_map.h"
 #include "stream/pack_stream.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -79,7 +79,7 @@ Result<void> validate(const std::vector<Step>& steps) {
 
 Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps, const std::string& output,
                                 Container container, const Execution& execution) {
-    return guarded([&]() -> Result<StepsReport> {
+    return no_throw([&]() -> Result<StepsReport> {
         if (auto valid = validate(steps); !valid) return valid.error();
         StepsReport report;
         const std::unique_ptr<MapSource> map = made_map(input, steps, steps.size() - 1, execution);

@@ -8,7 +8,7 @@
 #include <tex/pack.h>
 
 #include "rows/swizzle_evidence.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -30,7 +30,7 @@ std::string layout_name(const Swizzle& swizzle) {
 }
 
 Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution) {
-    return guarded([&]() -> Result<Swizzle> {
+    return no_throw([&]() -> Result<Swizzle> {
         if (texture.swizzle_known || format_info(texture.format).channels < 4) return texture.swizzle;
         const auto image = decode(texture, 0, execution);
         if (!image) return image.error();

@@ -7,7 +7,7 @@
 
 #include "mesh/meshopt.h"
 #include "mesh/mikktspace.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -25,7 +25,7 @@ Result<std::vector<Float4>> tangents_of(const MeshPart& part, TangentMethod meth
 
 Result<std::vector<Float4>> make_tangents(const MeshPart& part, TangentMethod method, int uv_set,
                                           const Execution& execution) {
-    return guarded([&]() -> Result<std::vector<Float4>> {
+    return no_throw([&]() -> Result<std::vector<Float4>> {
         if (auto sound = check_part(part); !sound) return sound.error();
         if (part.normals.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no normals"};
         if (uv_set < 0 || static_cast<std::size_t>(uv_set) >= part.uvs.size()) {
@@ -44,7 +44,7 @@ Result<std::vector<Float4>> make_tangents(const MeshPart& part, TangentMethod me
 }
 
 Result<std::vector<Float4>> stored_tangents(const MeshPart& part) {
-    return guarded([&]() -> Result<std::vector<Float4>> {
+    return no_throw([&]() -> Result<std::vector<Float4>> {
         if (part.tangents.empty()) return Error{ErrorCode::bad_option, {}, "the mesh has no tangents"};
         std::vector<Float4> corners;
         corners.reserve(part.indices.size());

@@ -16,7 +16,7 @@
 #include "rays/transfer_strips.h"
 #include "rows/usable.h"
 #include "surface/nearest.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -238,7 +238,7 @@ Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const s
 Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,
                                  const TransferInputs& inputs, const TransferOptions& options,
                                  const Execution& execution) {
-    return guarded(execution, [&]() -> Result<TransferredMaps> {
+    return no_throw(execution, [&]() -> Result<TransferredMaps> {
         if (auto usable = check_usable(extent, "the map"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
         if (auto sound = check_part(low.part); !sound) return sound.error().of(low.file);

@@ -14,7 +14,7 @@
 #include "rows/stored_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -239,7 +239,7 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
 }  // namespace
 
 Result<Image> decode(const Texture& texture, int level, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<Image> {
+    return no_throw(execution, [&]() -> Result<Image> {
         if (level < 0 || static_cast<std::size_t>(level) >= texture.levels.size())
             return bad_option("level: the texture has no level " + std::to_string(level));
         const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
@@ -272,14 +272,14 @@ Result<void> decode_blocks(Format format, const std::byte* bytes, std::size_t pi
 }
 
 Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<MipChain> {
+    return no_throw(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(texture); !usable) return usable.error();
         return unpack_levels(texture, options, execution);
     });
 }
 
 Result<NormalMap> unpack(const Image& image, const UnpackOptions& options, const Execution& execution) {
-    return guarded(execution, [&]() -> Result<NormalMap> {
+    return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(image); !usable) return usable.error();
         return unpack_image(image, options, execution);
     });

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/claims.h"
 #include "formats/row_source.h"
+#include "formats/size_limits.h"
 
 using OpenRows = tex::Result<std::unique_ptr<tex::RowSource>> (*)(tex::InputFile&, const tex::ReadOptions&);
 

@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "formats/claims.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_chunk.h"
 #include "formats/exr/exr_part.h"
 #include "formats/exr/exr_rows.h"
+#include "formats/size_limits.h"
 #include "reference/exr_file.h"
 
 // Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.

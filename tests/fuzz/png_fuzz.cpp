@@ -11,8 +11,8 @@
 #include <functional>
 #include <string>
 
-#include "formats/claims.h"
 #include "formats/png/png.h"
+#include "formats/size_limits.h"
 #include "fuzz/png_mutator.h"
 
 namespace {

@@ -38,7 +38,7 @@ std::vector<float> draw_whiteout(const GlBlend& blend) {
     gl.ActiveTexture(GL_TEXTURE1);
     const GLuint detail = upload_map(*blend.detail, vector);
     const tex::Extent extent = blend.base->levels.front().extent();
-    const std::vector<float> rgba = draw(program, extent, 3, [&](const Place& place) {
+    const std::vector<float> rgba = draw(program, extent, 3, [&](const UniformLocation& place) {
         gl.Uniform1i(place("base"), 0);
         gl.Uniform1i(place("detail"), 1);
         gl.Uniform2f(place("extent"), static_cast<float>(extent.width), static_cast<float>(extent.height));

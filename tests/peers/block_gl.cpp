@@ -57,7 +57,7 @@ std::vector<std::vector<float>> sample_levels(tex::Format format, const std::vec
     std::vector<std::vector<float>> result;
     for (std::size_t k = 0; k < levels.size(); ++k) {
         const tex::Extent extent = levels[k].extent;
-        std::vector<float> rgba = draw(program, extent, 3, [&](const Place& place) {
+        std::vector<float> rgba = draw(program, extent, 3, [&](const UniformLocation& place) {
             gl.Uniform1f(place("lod"), static_cast<float>(k));
             gl.Uniform2f(place("extent"), static_cast<float>(extent.width), static_cast<float>(extent.height));
         });

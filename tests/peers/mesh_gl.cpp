@@ -82,7 +82,7 @@ GLuint upload_corners(const tex::TangentSpace& space) {
     return texture;
 }
 
-void set_uniforms(const Gl& gl, const Place& place, const GlScene& s, const GlMesh& mesh) {
+void set_uniforms(const Gl& gl, const UniformLocation& place, const GlScene& s, const GlMesh& mesh) {
     const std::pair<const char*, float> numbers[] = {
         {"slope", s.slope},
         {"aspect", static_cast<float>(s.picture.width) / static_cast<float>(s.picture.height)},
@@ -113,7 +113,7 @@ std::vector<float> draw_mesh(const GlScene& scene, const GlMesh& mesh) {
     const GLuint map = upload_map(*scene.map, [](float x, float y, float z) { return Rgba{x, y, z, 1.0f}; });
     const std::vector<float> rgba =
         draw_triangles(program, scene.picture, static_cast<int>(mesh.space->part.indices.size()),
-                       [&](const Place& place) { set_uniforms(gl, place, scene, mesh); });
+                       [&](const UniformLocation& place) { set_uniforms(gl, place, scene, mesh); });
     for (const GLuint texture : {corners, map}) gl.DeleteTextures(1, &texture);
     gl.DeleteProgram(program);
     return flipped(rgba, scene.picture);

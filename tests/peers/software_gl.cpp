@@ -122,7 +122,7 @@ namespace {
 
 // Draws with the shape of vertices `mode`, and a depth buffer if there are triangles.
 std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int vertices,
-                           const std::function<void(const Place&)>& set_uniforms) {
+                           const std::function<void(const UniformLocation&)>& set_uniforms) {
     const Gl& gl = software_gl();
     const bool with_depth = mode == GL_TRIANGLES;
     gl.ActiveTexture(GL_TEXTURE2);  // 0 and 1 hold the maps
@@ -162,12 +162,12 @@ std::vector<float> draw_as(GLenum mode, GLuint program, tex::Extent extent, int 
 }  // namespace
 
 std::vector<float> draw(GLuint program, tex::Extent extent, int vertices,
-                        const std::function<void(const Place&)>& set_uniforms) {
+                        const std::function<void(const UniformLocation&)>& set_uniforms) {
     return draw_as(GL_TRIANGLE_STRIP, program, extent, vertices, set_uniforms);
 }
 
 std::vector<float> draw_triangles(GLuint program, tex::Extent extent, int vertices,
-                                  const std::function<void(const Place&)>& set_uniforms) {
+                                  const std::function<void(const UniformLocation&)>& set_uniforms) {
     return draw_as(GL_TRIANGLES, program, extent, vertices, set_uniforms);
 }
 

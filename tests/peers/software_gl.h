@@ -92,13 +92,13 @@ GLuint upload_plane(const tex::Plane<float>& plane);
 // Draws `vertices` of a triangle strip with the program, whose uniforms set_uniforms(place) sets, over a cleared
 // RGBA32F target. Returns RGBA of each texel, rows from the bottom of the target; empty where OpenGL reported an error
 // since the last drawing. Textures stay bound.
-using Place = std::function<GLint(const char* uniform)>;
+using UniformLocation = std::function<GLint(const char* uniform)>;
 std::vector<float> draw(GLuint program, tex::Extent target, int vertices,
-                        const std::function<void(const Place&)>& set_uniforms);
+                        const std::function<void(const UniformLocation&)>& set_uniforms);
 
 // The same of separate triangles: nearer ones hide others, and those whose corners are clockwise are not drawn.
 std::vector<float> draw_triangles(GLuint program, tex::Extent target, int vertices,
-                                  const std::function<void(const Place&)>& set_uniforms);
+                                  const std::function<void(const UniformLocation&)>& set_uniforms);
 
 // Rows of RGBA, the last first.
 std::vector<float> flipped(const std::vector<float>& rgba, tex::Extent extent);

@@ -70,7 +70,7 @@ void main() {
     fragment = vec4(srgb(sum.r), srgb(sum.g), srgb(sum.b), 1.0);
 })";
 
-void set_uniforms(const Gl& gl, const Place& place, const GlScene& s) {
+void set_uniforms(const Gl& gl, const UniformLocation& place, const GlScene& s) {
     const std::pair<const char*, float> numbers[] = {
         {"slope", s.slope},
         {"aspect", static_cast<float>(s.picture.width) / static_cast<float>(s.picture.height)},
@@ -110,7 +110,7 @@ std::vector<float> draw_wikibook_plane(const GlScene& scene) {
         return Rgba{1.0f, (y + 1.0f) / 2.0f, 1.0f, (x + 1.0f) / 2.0f};
     });
     const std::vector<float> rgba =
-        draw(program, scene.picture, 4, [&](const Place& place) { set_uniforms(gl, place, scene); });
+        draw(program, scene.picture, 4, [&](const UniformLocation& place) { set_uniforms(gl, place, scene); });
     for (const GLuint texture : {height, map}) gl.DeleteTextures(1, &texture);
     gl.DeleteProgram(program);
     return flipped(rgba, scene.picture);

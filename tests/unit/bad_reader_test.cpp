@@ -113,7 +113,7 @@ TEST_F(BadReader, ThatLiesAboutThePictureIsNotBelieved) {
     header.width = header.height = 30'000;
     EXPECT_EQ(read_with(handing_over(header, 4)).code, ErrorCode::bad_data);
     header.channels = kMaxReaderChannels;  // 58 GB of bytes, 230 GB of floats
-    EXPECT_EQ(read_with(handing_over(header, 4)).reason, "the decoder handed over nonsense");
+    EXPECT_EQ(read_with(handing_over(header, 4)).reason, "the decoder returned invalid data");
     header = sound();
     header.channels = 1'000'000;
     EXPECT_EQ(read_with(handing_over(header, 4)).code, ErrorCode::bad_data);

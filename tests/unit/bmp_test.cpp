@@ -8,7 +8,7 @@
 
 #include <tex/file.h>
 
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "reference/bmp_file.h"
 
 namespace tex {

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "unit/targets.h"
 
 namespace tex {
@@ -29,7 +29,7 @@ void make_half(std::mt19937& random, std::byte half[kHalfBytes]) {
     for (int k = 0; k < kHalfBytes; ++k) half[k] = static_cast<std::byte>(random());
 }
 
-TEST(HalfBlock, ShapesAreWhatDecodersMake) {
+TEST(BlockHalf, ShapesAreWhatDecodersMake) {
     std::mt19937 random(1);
     for (const HalfKind kind : kKinds) {
         int lines = 0;
@@ -50,7 +50,7 @@ TEST(HalfBlock, ShapesAreWhatDecodersMake) {
     }
 }
 
-TEST(HalfBlock, VariantsKeepWhatIsCopiedAndComeCloseToTheLine) {
+TEST(BlockHalf, VariantsKeepWhatIsCopiedAndComeCloseToTheLine) {
     std::mt19937 random(2);
     for (const HalfKind kind : kKinds) {
         for (int trial = 0; trial < 200; ++trial) {

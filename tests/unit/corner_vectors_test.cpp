@@ -153,7 +153,7 @@ TEST(HitNormals, AreThoseOfEachHit) {
                 normals.add(surface, {high[k % 5 == 1 ? 1 : 0], k % 2}, weights.at(k));
             normals.find(surface);
             for (std::size_t k = 0; k < count; ++k) {
-                const Vector3 wanted = surface.normal_at(normals.place(k), weights.at(k));
+                const Vector3 wanted = surface.normal_at(normals.triangle(k), weights.at(k));
                 EXPECT_NEAR(dot(wanted, wanted), 1.0, 1e-12);
                 expect_same({normals.at(k).x, normals.at(k).y, normals.at(k).z}, wanted);
             }

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/claims.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_chunk.h"
+#include "formats/size_limits.h"
 #include "reference/exr_file.h"
 #include "unit/exr_files.h"
 

@@ -64,12 +64,12 @@ TEST(MeshSeams, EachEdgeIsOneWitness) {
     const auto verdict = [&](int side) {
         const SeamSamples samples(part, edges, {side, side}, [](double, double) { return Vector3{0.0, 0.0, 1.0}; });
         std::vector<Vector3> a, b;
-        for (const SeamSamples::Place& place : samples.places()) {
+        for (const SeamSamples::Sample& place : samples.samples()) {
             const double e = static_cast<double>(place.edge);
             a.push_back({0.02 * std::sin(e), 0.01 * std::cos(3.0 * e), 0.0});
             b.push_back({0.02 * std::cos(2.0 * e), 0.01 * std::sin(5.0 * e), 0.0});
         }
-        return std::pair(samples.places().size(), compare_gaps(samples, a, b));
+        return std::pair(samples.samples().size(), compare_gaps(samples, a, b));
     };
     const auto few = verdict(8), many = verdict(256);
     EXPECT_GT(many.first, 3 * few.first);

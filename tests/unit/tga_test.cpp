@@ -12,8 +12,8 @@
 
 #include <tex/file.h>
 
-#include "formats/claims.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
+#include "formats/size_limits.h"
 #include "reference/tga_file.h"
 
 namespace tex {

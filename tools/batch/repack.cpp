@@ -19,7 +19,7 @@ void NormalsConverter::note(Job& job, const StepsReport& done) {
     for (const MapRead& map : done.maps) normals.note(job, map.file, map.info);
 }
 
-void Repacker::add_files(const char* inputs) {
+void PackCommand::add_files(const char* inputs) {
     command.usage("NORMALS... -o FILE");
     command.usage("NORMALS... --out-dir DIR [--name PATTERN]");
     command.input("NORMALS...", inputs);
@@ -27,9 +27,9 @@ void Repacker::add_files(const char* inputs) {
     normals.add(command);
 }
 
-Encoding Repacker::encoding(const SourceInfo&, const Task& task) const { return default_encoding(task.container); }
+Encoding PackCommand::encoding(const SourceInfo&, const Task& task) const { return default_encoding(task.container); }
 
-PackFileOptions Repacker::all_options(Job& job) const {
+PackFileOptions PackCommand::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
     if (others.is_added()) others.apply(with.source.unpack);
@@ -47,7 +47,7 @@ PackFileOptions Repacker::all_options(Job& job) const {
     return with;
 }
 
-Result<void> Repacker::process(Job& job) {
+Result<void> PackCommand::process(Job& job) {
     PackFileOptions with = all_options(job);
     if (job.task.model) {
         if (auto opened = job.task.model->open(with.source.read); !opened) return opened;

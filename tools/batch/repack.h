@@ -30,7 +30,7 @@ protected:
 };
 
 // A command that calls pack_file() of libtex and has its own options.
-class Repacker : public NormalsConverter {
+class PackCommand : public NormalsConverter {
 public:
     using NormalsConverter::NormalsConverter;
 

@@ -35,7 +35,7 @@ std::string name_for(const std::string& pattern, const Task& task) {
 
 }  // namespace
 
-const std::array<OtherOptions::Place, 3> OtherOptions::kPlaces = {{
+const std::array<OtherOptions::PlaceOption, 3> OtherOptions::kPlaceOptions = {{
     {"--blue", "what blue holds instead of z, as --alpha", "z", &OtherPlanes::blue, &OtherInputs::blue,
      &OtherOptions::blue_, "keep", "height", false},
     {"--alpha", "what alpha holds: FILE[:CHANNEL], a number from 0 to 1, or a word", "nothing: it is 1",
@@ -44,7 +44,7 @@ const std::array<OtherOptions::Place, 3> OtherOptions::kPlaces = {{
      &OtherPlanes::length, &OtherInputs::length, &OtherOptions::length_, "occlusion", nullptr, true},
 }};
 
-void OtherOptions::take(const std::string& text, const Place& place) {
+void OtherOptions::take(const std::string& text, const PlaceOption& place) {
     Choice& choice = this->*place.choice;
     choice = {};
     const bool is_number = !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
@@ -64,7 +64,7 @@ void OtherOptions::take(const std::string& text, const Place& place) {
     }
 }
 
-void OtherOptions::add_place(Command& command, const Place& place) {
+void OtherOptions::add_option(Command& command, const PlaceOption& place) {
     Row& row = command.option(place.option, "WHAT", place.help,
                               [this, &place](const std::string& text) { take(text, place); });
     row.preset = "none";
@@ -83,7 +83,7 @@ void OtherOptions::add(Command& command, OutputOptions& output, const NormalsRea
     is_added_ = true;
     reads_ = reads;
     command.group("Data beside the normals");
-    for (const Place& place : kPlaces) add_place(command, place);
+    for (const PlaceOption& place : kPlaceOptions) add_option(command, place);
     Row& kind = command.option("--kind", "KIND[,KIND]", "what blue and alpha hold, which decides about smaller levels",
                                [this](const std::string& text) {
                                    const auto [first, second] = cut(text, ',');
@@ -120,7 +120,7 @@ void OtherOptions::set_layout(const Command& command, OutputOptions& output) {
 
 void OtherOptions::check_room(const OutputOptions& output) const {
     if (!output.format) return;
-    for (const Place& place : kPlaces) {
+    for (const PlaceOption& place : kPlaceOptions) {
         if (!(this->*place.choice).is_given() || can_hold(*output.format).*place.has) continue;
         std::vector<std::string> able;
         for (const auto& row : kEncodingNames) {
@@ -143,7 +143,7 @@ void OtherOptions::check_lengths(const Command& command) const {
 }
 
 void OtherOptions::amend(Task& task) const {
-    for (const Place& place : kPlaces) {
+    for (const PlaceOption& place : kPlaceOptions) {
         const Choice& choice = this->*place.choice;
         if (choice.from == Choice::From::file) task.own.push_back(file_for(choice, task).file);
     }
@@ -170,20 +170,20 @@ std::optional<OtherData> OtherOptions::data(const Choice& choice, Job& job) cons
 
 OtherInputs OtherOptions::inputs(Job& job) const {
     OtherInputs inputs;
-    for (const Place& place : kPlaces) inputs.*place.data = data(this->*place.choice, job);
+    for (const PlaceOption& place : kPlaceOptions) inputs.*place.data = data(this->*place.choice, job);
     return inputs;
 }
 
 void OtherOptions::apply(UnpackOptions& unpack) const {
     OtherPlanes kept;
-    for (const Place& place : kPlaces) kept.*place.has = (this->*place.choice).from == Choice::From::kept;
+    for (const PlaceOption& place : kPlaceOptions) kept.*place.has = (this->*place.choice).from == Choice::From::kept;
     kept.length = kept.length && unpack.others.length;  // if lengths are data
     unpack.others = kept;
 }
 
 OtherPlanes OtherOptions::accounted_for(OtherPlanes held) const {
     OtherPlanes planes;
-    for (const Place& place : kPlaces) {
+    for (const PlaceOption& place : kPlaceOptions) {
         const Choice& choice = this->*place.choice;
         const bool is_told_to_go = choice.from == Choice::From::nothing && place.is_kept;
         planes.*place.has = choice.is_given() || is_told_to_go || held.*place.has;

@@ -60,7 +60,7 @@ private:
         [[nodiscard]] bool is_given() const { return from != From::nothing && from != From::kept; }
     };
     // A place beside the normals, and the option that says what it holds.
-    struct Place {
+    struct PlaceOption {
         const char* option;
         const char* help;
         const char* nothing;  // what it holds then
@@ -71,10 +71,10 @@ private:
         const char* heights;  // the word for heights that are baked; null: they do not go there
         bool is_kept;         // without the option
     };
-    static const std::array<Place, 3> kPlaces;
+    static const std::array<PlaceOption, 3> kPlaceOptions;
 
-    void take(const std::string& text, const Place& place);
-    void add_place(Command& command, const Place& place);
+    void take(const std::string& text, const PlaceOption& place);
+    void add_option(Command& command, const PlaceOption& place);
     void set_layout(const Command& command, OutputOptions& output);
     void check_room(const OutputOptions& output) const;
     void check_lengths(const Command& command) const;

@@ -13,21 +13,21 @@ namespace {
 constexpr int kMostCells = 256;  // in each direction: 64 MB for their numbers
 constexpr std::int32_t kNoVertex = -1;
 
-using Place = std::array<double, 3>;
+using Point = std::array<double, 3>;
 
-Place place_of(const Float3& p) {
+Point point_of(const Float3& p) {
     return {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)};
 }
 
-Float3 rounded_place(const Place& p) {
+Float3 rounded_point(const Point& p) {
     return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
 // Twice the triangle's area, along its normal.
-Place area_of(const MeshPart& part, std::size_t triangle) {
-    std::array<Place, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) p[k] = place_of(part.positions[part.indices[3 * triangle + k]]);
-    Place a{}, b{};
+Point area_of(const MeshPart& part, std::size_t triangle) {
+    std::array<Point, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = point_of(part.positions[part.indices[3 * triangle + k]]);
+    Point a{}, b{};
     for (std::size_t c = 0; c < 3; ++c) {
         a[c] = p[1][c] - p[0][c];
         b[c] = p[2][c] - p[0][c];
@@ -35,19 +35,19 @@ Place area_of(const MeshPart& part, std::size_t triangle) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-double length_of(const Place& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double length_of(const Point& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 // Of unit length, if it has any.
-Place unit_of(Place v) {
+Point unit_of(Point v) {
     const double length = length_of(v);
     if (!(length > 1e-30)) return v;
     for (double& c : v) c /= length;
     return v;
 }
 
-Place normal_at(const MeshPart& part, std::size_t triangle, std::size_t corner) {
+Point normal_at(const MeshPart& part, std::size_t triangle, std::size_t corner) {
     if (part.normals.empty()) return unit_of(area_of(part, triangle));
-    return unit_of(place_of(part.normals[part.indices[3 * triangle + corner]]));
+    return unit_of(point_of(part.normals[part.indices[3 * triangle + corner]]));
 }
 
 MeshPart joined_parts(const std::vector<MeshPart>& parts) {
@@ -62,7 +62,7 @@ MeshPart joined_parts(const std::vector<MeshPart>& parts) {
         }
         for (std::size_t k = 0; k < part.indices.size(); ++k) {
             all.positions.push_back(part.positions[part.indices[k]]);
-            all.normals.push_back(rounded_place(normal_at(part, k / 3, k % 3)));
+            all.normals.push_back(rounded_point(normal_at(part, k / 3, k % 3)));
             all.indices.push_back(first + static_cast<std::uint32_t>(k));
         }
     }
@@ -70,7 +70,7 @@ MeshPart joined_parts(const std::vector<MeshPart>& parts) {
 }
 
 // The side of a cube that a normal points to.
-std::size_t side_of(const Place& n) {
+std::size_t side_of(const Point& n) {
     std::size_t axis = 0;
     for (std::size_t c = 1; c < 3; ++c) {
         if (std::abs(n[c]) > std::abs(n[axis])) axis = c;
@@ -80,15 +80,15 @@ std::size_t side_of(const Place& n) {
 
 // The box of all triangles, and their area.
 struct Bounds {
-    Place low{}, high{};
+    Point low{}, high{};
     double area = 0.0;
     std::size_t triangles = 0;
 
     explicit Bounds(const std::vector<MeshPart>& parts) {
-        low = high = place_of(parts.front().positions[parts.front().indices.front()]);
+        low = high = point_of(parts.front().positions[parts.front().indices.front()]);
         for (const MeshPart& part : parts) {
             for (const std::uint32_t v : part.indices) {
-                const Place p = place_of(part.positions[v]);
+                const Point p = point_of(part.positions[v]);
                 for (std::size_t c = 0; c < 3; ++c) {
                     low[c] = std::min(low[c], p[c]);
                     high[c] = std::max(high[c], p[c]);
@@ -123,10 +123,10 @@ public:
             if (vertices[corner] == kNoVertex) {
                 const Cell& cell = cells_of_[corner / 6];
                 vertices[corner] = static_cast<std::int32_t>(part.positions.size());
-                Place p = cell.sum;
+                Point p = cell.sum;
                 for (double& c : p) c /= cell.count;
-                part.positions.push_back(rounded_place(p));
-                part.normals.push_back(rounded_place(cell.normal(corner % 6)));
+                part.positions.push_back(rounded_point(p));
+                part.normals.push_back(rounded_point(cell.normal(corner % 6)));
             }
             part.indices.push_back(static_cast<std::uint32_t>(vertices[corner]));
         }
@@ -136,16 +136,16 @@ public:
 private:
     // The vertices in a cell; normals by the side that they face.
     struct Cell {
-        Place sum{};
+        Point sum{};
         double count = 0.0;
-        std::array<Place, 6> normals{};
+        std::array<Point, 6> normals{};
 
         // With those of other sides within 60 degrees: smooth surfaces face several sides in a cell.
-        [[nodiscard]] Place normal(std::size_t side) const {
-            const Place own = unit_of(normals[side]);
-            Place sum{};
-            for (const Place& other : normals) {
-                const Place n = unit_of(other);
+        [[nodiscard]] Point normal(std::size_t side) const {
+            const Point own = unit_of(normals[side]);
+            Point sum{};
+            for (const Point& other : normals) {
+                const Point n = unit_of(other);
                 if (n[0] * own[0] + n[1] * own[1] + n[2] * own[2] < 0.5) continue;
                 for (std::size_t c = 0; c < 3; ++c) sum[c] += other[c];
             }
@@ -156,8 +156,8 @@ private:
     void add(const MeshPart& part, std::size_t triangle) {
         std::array<std::size_t, 3> corners{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const Place p = place_of(part.positions[part.indices[3 * triangle + k]]);
-            const Place n = normal_at(part, triangle, k);
+            const Point p = point_of(part.positions[part.indices[3 * triangle + k]]);
+            const Point n = normal_at(part, triangle, k);
             const std::size_t number = cell_of(p), side = side_of(n);
             Cell& cell = cells_of_[number];
             for (std::size_t c = 0; c < 3; ++c) {
@@ -171,7 +171,7 @@ private:
         if (a != b && b != c && c != a) corners_.insert(corners_.end(), corners.begin(), corners.end());
     }
 
-    std::size_t cell_of(const Place& p) {
+    std::size_t cell_of(const Point& p) {
         std::size_t at = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             const double place = std::clamp((p[c] - low_[c]) / cell_, 0.0, static_cast<double>(cells_ - 1));
@@ -184,7 +184,7 @@ private:
         return static_cast<std::size_t>(numbers_[at]);
     }
 
-    Place low_;
+    Point low_;
     double cell_;
     std::size_t cells_;
     std::vector<std::int32_t> numbers_;

@@ -34,7 +34,7 @@ std::size_t number_length(std::string_view text) {
 }
 
 // Takes the numbers of a name; false if the name does not match the pattern.
-bool match(std::string_view pattern, std::string_view name, GridPlace& place) {
+bool match(std::string_view pattern, std::string_view name, TilePosition& place) {
     while (!pattern.empty()) {
         const bool is_column = pattern.starts_with(kColumnMark);
         if (!is_column && !pattern.starts_with(kRowMark)) {
@@ -60,8 +60,8 @@ bool has_mark(std::string_view text) {
 }
 
 // Follows the components of the pattern from `next` on, below `folder`.
-Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::path::iterator end, const GridPlace& place,
-                        std::vector<GridFile>& found) {
+Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::path::iterator end,
+                        const TilePosition& place, std::vector<GridFile>& found) {
     if (next == end) {
         found.push_back({slashed(folder), place});
         return {};
@@ -76,7 +76,7 @@ Result<void> find_below(const fs::path& folder, fs::path::iterator next, fs::pat
     std::error_code error;
     for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), last; !error && entry != last;
          entry.increment(error)) {
-        GridPlace its = place;
+        TilePosition its = place;
         const std::string name = slashed(entry->path().filename());
         if (!match(component, name, its)) continue;
         if (after != end && !entry->is_directory(error)) continue;
@@ -110,8 +110,8 @@ bool has_grid(std::string_view name) {
     return name.find(kColumnMark) != std::string_view::npos && name.find(kRowMark) != std::string_view::npos;
 }
 
-std::optional<GridPlace> place_in_grid(const std::string& pattern, const std::string& path) {
-    GridPlace place;
+std::optional<TilePosition> place_in_grid(const std::string& pattern, const std::string& path) {
+    TilePosition place;
     return match(pattern, path, place) ? std::optional(std::move(place)) : std::nullopt;
 }
 
@@ -123,7 +123,7 @@ std::string grid_glob(const std::string& pattern) {
     return with_grid(pattern, {0, 0, "*", "*"});
 }
 
-std::string with_grid(std::string name, const GridPlace& place) {
+std::string with_grid(std::string name, const TilePosition& place) {
     for (const auto& [mark, text] : {std::pair(kColumnMark, place.x_text), std::pair(kRowMark, place.y_text)}) {
         for (std::size_t at = name.find(mark); at != std::string::npos; at = name.find(mark, at + text.size()))
             name.replace(at, mark.size(), text);

@@ -18,28 +18,28 @@ namespace tex::cli {
 struct Task;
 
 // The place of a tile, and its numbers as the file's name has them.
-struct GridPlace {
+struct TilePosition {
     int x = 0, y = 0;
     std::string x_text = {}, y_text = {};
 };
 
 struct GridFile {
     std::string name;
-    GridPlace place;
+    TilePosition place;
 };
 
 // Whether a name has both marks.
 [[nodiscard]] bool has_grid(std::string_view name);
 
 // The place of the tile that a path with numbers in the place of the marks names; none if it does not match.
-[[nodiscard]] std::optional<GridPlace> place_in_grid(const std::string& pattern, const std::string& path);
+[[nodiscard]] std::optional<TilePosition> place_in_grid(const std::string& pattern, const std::string& path);
 
 // The pattern with * in the place of the marks. Throws UsageError if it has other wildcards, or if no other characters
 // stand between the marks.
 [[nodiscard]] std::string grid_glob(const std::string& pattern);
 
 // The name with the tile's numbers in the place of the marks.
-[[nodiscard]] std::string with_grid(std::string name, const GridPlace& place);
+[[nodiscard]] std::string with_grid(std::string name, const TilePosition& place);
 
 // The files whose names and folders a pattern stands for, row by row. Errors: io (there is none; a folder cannot be
 // read). Throws UsageError if no other characters stand between the marks, or if two files have one place.

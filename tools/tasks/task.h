@@ -30,10 +30,10 @@ struct Task {
     std::vector<std::string> more_outputs = {};  // outputs besides the first one
     // The files of options that write, such as --height-out, where the caller decides about names; else empty.
     std::map<std::string, std::string> places = {};
-    const Engine* engine = nullptr;       // what the output is for, if --for says it
-    int tile = 0;                         // the UDIM tile (udim.h), or 0
-    std::string pattern = {};             // the input's name with the mark, if that says the tile
-    std::optional<GridPlace> place = {};  // of the input, if it is a tile of a terrain (grid.h)
+    const Engine* engine = nullptr;          // what the output is for, if --for says it
+    int tile = 0;                            // the UDIM tile (udim.h), or 0
+    std::string pattern = {};                // the input's name with the mark, if that says the tile
+    std::optional<TilePosition> place = {};  // of the input, if it is a tile of a terrain (grid.h)
     // The tiles around it, row by row, with an empty name for its own and for those that do not exist.
     std::vector<std::string> around = {};
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself

@@ -27,7 +27,7 @@ struct Input {
     std::string name;
     int tile = 0;                                  // 0: none
     std::string pattern = {};                      // the name with the mark, if there is a tile
-    std::optional<GridPlace> place = {};           // of a tile of a terrain; `pattern` is then the name with its marks
+    std::optional<TilePosition> place = {};        // of a tile of a terrain; `pattern` is then the name with its marks
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model (model_input.h)
 };
 

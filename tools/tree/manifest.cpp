@@ -19,7 +19,7 @@
 namespace tex::cli {
 namespace {
 
-Place place_of(const toml::source_region& source) {
+TextPosition place_of(const toml::source_region& source) {
     return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
 }
 
@@ -280,7 +280,7 @@ Manifest ManifestReader::read(const toml::table& table) {
 
 }  // namespace
 
-void fail_at(const std::string& path, const Place& place, const std::string& reason) {
+void fail_at(const std::string& path, const TextPosition& place, const std::string& reason) {
     throw UsageError(fmt::format("{}: line {}, column {}: {}", printable(path), place.line, place.column, reason));
 }
 

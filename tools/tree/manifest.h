@@ -15,7 +15,7 @@
 namespace tex::cli {
 
 // A place in the manifest. Both count from 1.
-struct Place {
+struct TextPosition {
     int line = 1;
     int column = 1;
 };
@@ -28,20 +28,20 @@ struct OptionSetting {
     bool is_flag = false;             // true or false
     bool is_on = true;                // of a flag
     bool is_default = false;          // from [defaults]
-    Place place;
+    TextPosition place;
 };
 using Settings = std::vector<OptionSetting>;  // sorted by key
 
 struct StepSettings {
     std::string command;  // "bake", for bake-normals
     Settings settings;
-    Place place;
+    TextPosition place;
 };
 
 struct OutputSettings {
     std::string name;  // a pattern
     Settings settings;
-    Place place;
+    TextPosition place;
 };
 
 struct RuleSettings {
@@ -51,7 +51,7 @@ struct RuleSettings {
     std::vector<StepSettings> steps;
     std::vector<OutputSettings> outputs;
     Settings check;
-    Place place;
+    TextPosition place;
 };
 
 struct Manifest {
@@ -61,7 +61,7 @@ struct Manifest {
 };
 
 // Throws a UsageError: "PATH: line L, column C: REASON".
-[[noreturn]] void fail_at(const std::string& path, const Place& place, const std::string& reason);
+[[noreturn]] void fail_at(const std::string& path, const TextPosition& place, const std::string& reason);
 
 // Reads a manifest. `commands` are the names that a step may have. Throws UsageError. The keys of steps are not checked
 // here, because only the commands know them.

@@ -100,7 +100,7 @@ bool Recipe::takes(const std::string& input) const {
 }
 
 void Recipe::check_tiles(const ReadyCommand& first) const {
-    Place place = rule_.place;
+    TextPosition place = rule_.place;
     for (const OptionSetting& setting : rule_.steps.front().settings) {
         if (setting.key == "tiles") place = setting.place;
     }

@@ -52,7 +52,7 @@ struct RecipeOutput {
     std::string data;      // the same of what is beside the normals: outputs of one flow have the same
     std::string out;       // its name, if the input is called "name"
     NamedValues named;     // the same for people
-    Place place;
+    TextPosition place;
 };
 
 class Recipe {
@@ -123,7 +123,7 @@ private:
     void find_files();
     [[nodiscard]] std::string below_root(const std::string& file) const;
     [[nodiscard]] std::vector<std::string> prerequisites_of(const std::string& path) const;
-    void check_folder(const NamePattern& name, const std::string& out, const Place& place) const;
+    void check_folder(const NamePattern& name, const std::string& out, const TextPosition& place) const;
     [[nodiscard]] NamedValues named_settings(const ReadyCommand& last, const Task& task) const;
 
     const Manifest& manifest_;

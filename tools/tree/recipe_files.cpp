@@ -48,7 +48,7 @@ std::string Recipe::below_out_dir(const std::string& name) const {
 }
 
 // An output that leads out of the root whatever its input is called is a mistake in the manifest.
-void Recipe::check_folder(const NamePattern& name, const std::string& out, const Place& place) const {
+void Recipe::check_folder(const NamePattern& name, const std::string& out, const TextPosition& place) const {
     const fs::path whole = (fs::path(rule_.out_dir) / fs::path(out).relative_path()).lexically_normal();
     if (!name.uses("dir") && *whole.begin() == "..") {
         fail_at(manifest_.path, place,

@@ -4,7 +4,7 @@
 #include <tex/types.h>
 
 #include "c/call.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {

@@ -3,7 +3,7 @@
 #include <tex/mesh.h>
 
 #include "c/call.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {

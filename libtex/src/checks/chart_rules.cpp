@@ -15,7 +15,7 @@
 #include "checks/thresholds.h"
 #include "mesh/charts.h"
 #include "mesh/coverage.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -57,8 +57,8 @@ struct Covering {
     Plane<std::int32_t> charts;          // for each texel, or kNoChart
 };
 
-StripSums sums_of(Covering& mesh, int strip, const Subject& subject) {
-    const Stored& stored = subject.stored;
+StripSums sums_of(Covering& mesh, int strip, const CheckContext& context) {
+    const Stored& stored = context.stored;
     StripSums sums;
     std::vector<Covered> texels;
     sums.overlaps = mesh.coverage.cover(strip, texels);
@@ -68,7 +68,7 @@ StripSums sums_of(Covering& mesh, int strip, const Subject& subject) {
         const int i = static_cast<int>(k) % width, j = strip * mesh.coverage.strip_rows() + static_cast<int>(k) / width;
         const bool inside = texels[k].inside;
         mesh.charts.at(i, j) = inside ? mesh.chart_of[static_cast<std::size_t>(texels[k].triangle)] : kNoChart;
-        if (inside && subject.background && subject.background->holds(i, j)) ++sums.background;
+        if (inside && context.background && context.background->holds(i, j)) ++sums.background;
         if (!inside || !stored.has_z()) continue;  // object space needs z
         const auto component = [&](int channel) { return static_cast<double>(stored.component(channel, i, j)); };
         const Vector n{component(x), component(y), component(z)};
@@ -96,12 +96,12 @@ void check_mirrored(const MeshPart& part, Extent extent, Findings& findings) {
     finding.unit = "share";
 }
 
-Result<StripSums> sums_over(Covering& mesh, const Subject& subject) {
+Result<StripSums> sums_over(Covering& mesh, const CheckContext& context) {
     std::vector<StripSums> strips(static_cast<std::size_t>(mesh.coverage.strips()));
     const auto measure = [&](int begin, int end) {
-        for (int k = begin; k < end; ++k) strips[static_cast<std::size_t>(k)] = sums_of(mesh, k, subject);
+        for (int k = begin; k < end; ++k) strips[static_cast<std::size_t>(k)] = sums_of(mesh, k, context);
     };
-    if (const auto done = parallel_for(subject.execution, mesh.coverage.strips(), 1, measure, {1.0, 1.0}); !done)
+    if (const auto done = parallel_for(context.execution, mesh.coverage.strips(), 1, measure, {1.0, 1.0}); !done)
         return done.error();
     StripSums all;
     for (const StripSums& strip : strips) {
@@ -115,10 +115,10 @@ Result<StripSums> sums_over(Covering& mesh, const Subject& subject) {
 }
 
 // Says how much of the background the mesh shows.
-void judge_background(const Subject& subject, std::int64_t covered, Findings& findings) {
+void judge_background(const CheckContext& context, std::int64_t covered, Findings& findings) {
     Finding* const finding = findings.find("N215");
-    if (finding == nullptr || !subject.background) return;
-    const double share = static_cast<double>(covered) / static_cast<double>(subject.background->masked);
+    if (finding == nullptr || !context.background) return;
+    const double share = static_cast<double>(covered) / static_cast<double>(context.background->masked);
     finding->message += covered == 0 ? "; no chart of the mesh covers any of it"
                                      : "; charts of the mesh cover " + percent(share) + " of it and its edges";
 }
@@ -134,12 +134,12 @@ void check_object_space(const StripSums& all, Findings& findings) {
     finding.confidence = 0.99;
 }
 
-Result<void> check_padding(Covering& mesh, const Subject& subject, Findings& findings) {
+Result<void> check_padding(Covering& mesh, const CheckContext& context, Findings& findings) {
     if (!findings.wants("N724")) return {};
-    const auto measure = measure_padding(subject.stored, mesh.charts, subject.execution);
+    const auto measure = measure_padding(context.stored, mesh.charts, context.execution);
     if (!measure) return measure.error();
     if (measure->level == 0) return {};
-    const auto [width, height] = subject.stored.extent();
+    const auto [width, height] = context.stored.extent();
     const Extent extent{std::max(1, width >> measure->level), std::max(1, height >> measure->level)};
     Finding& finding =
         findings.add("N724", "from level " + std::to_string(measure->level) + " (" + extent_text(extent) +
@@ -152,14 +152,14 @@ Result<void> check_padding(Covering& mesh, const Subject& subject, Findings& fin
 
 }  // namespace
 
-Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
-    const MeshPart& part = subject.options.mesh->selected.part;
-    check_mirrored(part, subject.stored.extent(), findings);
-    return guarded([&]() -> Result<void> {
-        auto coverage = CoverageMap::make(part, 0, subject.stored.extent(), 0);
+Result<void> check_chart_rules(const CheckContext& context, Findings& findings) {
+    const MeshPart& part = context.options.mesh->selected.part;
+    check_mirrored(part, context.stored.extent(), findings);
+    return no_throw([&]() -> Result<void> {
+        auto coverage = CoverageMap::make(part, 0, context.stored.extent(), 0);
         if (!coverage) return coverage.error();
-        Covering mesh{part, *std::move(coverage), charts_of(part, 0), Plane<std::int32_t>(subject.stored.extent())};
-        const auto all = sums_over(mesh, subject);
+        Covering mesh{part, *std::move(coverage), charts_of(part, 0), Plane<std::int32_t>(context.stored.extent())};
+        const auto all = sums_over(mesh, context);
         if (!all) return all.error();
         if (all->overlaps > 0) {
             Finding& finding =
@@ -167,9 +167,9 @@ Result<void> check_chart_rules(const Subject& subject, Findings& findings) {
             finding.figure = static_cast<double>(all->overlaps);
             finding.unit = "texels";
         }
-        judge_background(subject, all->background, findings);
+        judge_background(context, all->background, findings);
         check_object_space(*all, findings);
-        return check_padding(mesh, subject, findings);
+        return check_padding(mesh, context, findings);
     });
 }
 

@@ -7,8 +7,8 @@
 
 namespace tex::inline v1 {
 
-// Preconditions: subject.options.mesh is not null, subject.has_vectors. Errors: unsupported, as described in mesh.h;
+// Preconditions: context.options.mesh is not null, context.has_vectors. Errors: unsupported, as described in mesh.h;
 // cancelled.
-Result<void> check_chart_rules(const Subject& subject, Findings& findings);
+Result<void> check_chart_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -75,8 +75,8 @@ struct Votes {
     }
 };
 
-Votes votes_of(const Subject& subject) {
-    const std::vector<Neighbourhood> all = neighbourhoods_of(subject.curl);
+Votes votes_of(const CheckContext& context) {
+    const std::vector<Neighbourhood> all = neighbourhoods_of(context.curl);
     if (all.empty()) return {};
     const auto energy = [](const Neighbourhood& n) { return std::sqrt(n.sums.p_square * n.sums.q_square); };
     std::vector<double> energies;
@@ -100,9 +100,9 @@ Votes votes_of(const Subject& subject) {
     return votes;
 }
 
-void check_mixed(const Subject& subject, Findings& findings) {
-    if (subject.curl.usable < kLeastUsable) return;
-    Votes votes = votes_of(subject);
+void check_mixed(const CheckContext& context, Findings& findings) {
+    if (context.curl.usable < kLeastUsable) return;
+    Votes votes = votes_of(context);
     const bool up_is_less = votes.up.size() < votes.down.size();
     const std::vector<Region>& less = up_is_less ? votes.up : votes.down;
     const double all = static_cast<double>(votes.up.size() + votes.down.size());
@@ -116,7 +116,7 @@ void check_mixed(const Subject& subject, Findings& findings) {
                                  ", the others " + direction(y == YAxis::up ? YAxis::down : YAxis::up));
     finding.figure = share;
     finding.unit = "share";
-    finding.confidence = subject.y.confidence;
+    finding.confidence = context.y.confidence;
     finding.regions = less;
 }
 
@@ -134,24 +134,24 @@ std::string undecided_by(const Curl& curl) {
 
 }  // namespace
 
-void check_convention_rules(const Subject& subject, Findings& findings) {
-    if (!subject.sampled_ok) return;
-    check_mixed(subject, findings);
+void check_convention_rules(const CheckContext& context, Findings& findings) {
+    if (!context.sampled_ok) return;
+    check_mixed(context, findings);
     const auto add = [&](std::string_view id, std::string message) {
-        Finding& finding = findings.add(id, std::move(message) + " (correlation " + decimal(subject.y.correlation, 2) +
-                                                ", confidence " + decimal(subject.y.confidence, 3) + ")");
-        finding.figure = subject.y.correlation;
+        Finding& finding = findings.add(id, std::move(message) + " (correlation " + decimal(context.y.correlation, 2) +
+                                                ", confidence " + decimal(context.y.confidence, 3) + ")");
+        finding.figure = context.y.correlation;
         finding.unit = "correlation";
-        finding.confidence = subject.y.confidence;
+        finding.confidence = context.y.confidence;
     };
-    const auto& require = subject.options.require;
-    if (require.y && !subject.y.y) add("N403", "the texels do not show it: " + undecided_by(subject.curl));
-    if (!subject.y.y) return;
-    if (require.y && *subject.y.y != *require.y) {
-        add("N401", "green points " + direction(*subject.y.y) + " instead of " + direction(*require.y));
+    const auto& require = context.options.require;
+    if (require.y && !context.y.y) add("N403", "the texels do not show it: " + undecided_by(context.curl));
+    if (!context.y.y) return;
+    if (require.y && *context.y.y != *require.y) {
+        add("N401", "green points " + direction(*context.y.y) + " instead of " + direction(*require.y));
     }
-    if (subject.texture.y_known && *subject.y.y != subject.texture.y_axis) {
-        add("N404", "green points " + direction(*subject.y.y) + ", the file says " + direction(subject.texture.y_axis));
+    if (context.texture.y_known && *context.y.y != context.texture.y_axis) {
+        add("N404", "green points " + direction(*context.y.y) + ", the file says " + direction(context.texture.y_axis));
     }
 }
 

@@ -7,6 +7,6 @@
 
 namespace tex::inline v1 {
 
-void check_convention_rules(const Subject& subject, Findings& findings);
+void check_convention_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

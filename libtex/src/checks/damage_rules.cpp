@@ -73,13 +73,13 @@ struct Traces {
 };
 
 // Measures all at once, on several threads. Each measure is the work of one of them.
-Result<void> measure_traces(const Subject& subject, bool wants_seam, Traces& traces) {
-    const Stored& stored = subject.stored;
+Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces& traces) {
+    const Stored& stored = context.stored;
     std::vector<std::function<void()>> measures;
-    if (subject.sampled_ok) {
+    if (context.sampled_ok) {
         measures.emplace_back([&] {
-            if (is_astc(subject.texture.format)) return;  // its blocks have other sides, and smooth borders
-            if (const FormatInfo info = format_info(subject.texture.format); info.has_blocks())
+            if (is_astc(context.texture.format)) return;  // its blocks have other sides, and smooth borders
+            if (const FormatInfo info = format_info(context.texture.format); info.has_blocks())
                 traces.grid_ratio = grid_ratio(stored, info.block.width);
             else
                 traces.jpeg = measure_jpeg(stored);
@@ -88,21 +88,21 @@ Result<void> measure_traces(const Subject& subject, bool wants_seam, Traces& tra
     }
     if (!stored.is_signed)
         measures.emplace_back(
-            [&] { traces.centre = measure_centre(stored, subject.background ? &*subject.background : nullptr); });
+            [&] { traces.centre = measure_centre(stored, context.background ? &*context.background : nullptr); });
     if (wants_seam) measures.emplace_back([&] { traces.seam = measure_seam(stored); });
-    const Execution silent = subject.execution.quiet();
+    const Execution silent = context.execution.quiet();
     return parallel_for(silent, static_cast<int>(measures.size()), 1,
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
 }
 
-void check_curve(const Subject& subject, const Centre& centre, Findings& findings) {
-    if (subject.stored.is_signed) return;
+void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
+    if (context.stored.is_signed) return;
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
     if (!dark && !light) return;
-    if (subject.stored.has_z()) {
-        const double as_stored = length_error(subject.stored, [](double c, int, int) { return c; });
-        const double restored = length_error(subject.stored, [&](double c, int, int) {
+    if (context.stored.has_z()) {
+        const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
+        const double restored = length_error(context.stored, [&](double c, int, int) {
             return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
         });
         if (restored >= as_stored) return;
@@ -115,9 +115,9 @@ void check_curve(const Subject& subject, const Centre& centre, Findings& finding
     finding.confidence = 0.99;
 }
 
-void check_alpha(const Subject& subject, Findings& findings) {
-    const TexelCounts& counts = subject.counts;
-    const Stored& stored = subject.stored;
+void check_alpha(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
+    const Stored& stored = context.stored;
     const bool straight_possible =
         stored.has_z() && !stored.is_signed && stored.image->planes.size() == 4 && stored.channel(Component::x) != 3;
     if (!straight_possible || counts.high[3] - counts.low[3] < 0.1f) return;
@@ -145,19 +145,19 @@ void check_alpha(const Subject& subject, Findings& findings) {
 
 // What happened to a map whose x and y fit each other only if exchanged: with y up, slopes that were exchanged agree,
 // and those of a picture turned by 90 degrees disagree; with y down it is the other way round.
-std::string exchange_text(const Subject& subject) {
+std::string exchange_text(const CheckContext& context) {
     const std::string exchanged = "x and y are exchanged";
     const std::string turned = "the picture was turned by 90 degrees, but its vectors were not";
-    const bool agree = subject.curl.exchanged > 0.0;
-    std::optional<YAxis> y = subject.options.require.y;
-    if (!y && subject.texture.y_known) y = subject.texture.y_axis;
+    const bool agree = context.curl.exchanged > 0.0;
+    std::optional<YAxis> y = context.options.require.y;
+    if (!y && context.texture.y_known) y = context.texture.y_axis;
     if (y) return (*y == YAxis::up) == agree ? exchanged : turned;
     return (agree ? exchanged : turned) + ", if green points up; if it points down, " + (agree ? turned : exchanged);
 }
 
-void check_exchanged(const Subject& subject, Findings& findings) {
-    const TexelCounts& counts = subject.counts;
-    if (subject.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean &&
+void check_exchanged(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
+    if (context.stored.has_z() && std::max(counts.mean_x, counts.mean_y) > kExchangedMean &&
         std::abs(counts.mean_z) < kExchangedZ) {
         Finding& finding = findings.add(
             "N308", counts.mean_x > counts.mean_y ? "the channel of x holds z" : "the channel of y holds z");
@@ -166,20 +166,20 @@ void check_exchanged(const Subject& subject, Findings& findings) {
         finding.confidence = 0.99;
         return;
     }
-    const double as_stored = std::abs(subject.curl.correlation), exchanged = std::abs(subject.curl.exchanged);
+    const double as_stored = std::abs(context.curl.correlation), exchanged = std::abs(context.curl.exchanged);
     const bool behind = counts.share(Property::z_behind) > 0.05;
     if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
-    if (subject.curl.exchanged_confidence < kExchangedConfidence) return;
+    if (context.curl.exchanged_confidence < kExchangedConfidence) return;
     // The slopes of most surfaces change more along their own axis than across it, so they must do so after the
     // exchange. A bowl, whose slopes do not change across at all, looks exactly like a saddle with exchanged channels.
-    const CurlSums& sums = subject.curl.scale[subject.curl.best_scale];
+    const CurlSums& sums = context.curl.scale[context.curl.best_scale];
     if (sums.p_square * sums.q_square < kExchangedEnergy * sums.px_square * sums.qy_square) return;
-    if (diagonal_share(subject.stored) > kMostDiagonal) return;
-    Finding& finding = findings.add("N308", exchange_text(subject) + " (correlation " + decimal(exchanged, 2) +
+    if (diagonal_share(context.stored) > kMostDiagonal) return;
+    Finding& finding = findings.add("N308", exchange_text(context) + " (correlation " + decimal(exchanged, 2) +
                                                 " exchanged, " + decimal(as_stored, 2) + " as stored)");
     finding.figure = exchanged;
     finding.unit = "correlation";
-    finding.confidence = subject.curl.exchanged_confidence;
+    finding.confidence = context.curl.exchanged_confidence;
 }
 
 // Whether the trace comes from aligned blocks. Maps of few distinct values have it at every offset.
@@ -190,35 +190,35 @@ bool stands_out(const JpegTrace& trace, const Stored& stored) {
     });
 }
 
-void check_blocks(const Subject& subject, const Traces& traces, Findings& findings) {
+void check_blocks(const CheckContext& context, const Traces& traces, Findings& findings) {
     const auto add = [&](std::string_view id, std::string message, double figure, std::string_view unit) {
         Finding& finding = findings.add(id, std::move(message));
         finding.figure = figure;
         finding.unit = unit;
         finding.confidence = 0.95;
     };
-    if (const FormatInfo info = format_info(subject.texture.format); info.has_blocks()) {
+    if (const FormatInfo info = format_info(context.texture.format); info.has_blocks()) {
         const double ratio = traces.grid_ratio;
-        if (ratio > kBlockRatio && grid_excess(subject.stored, info.block.width) > kBlockExcess) {
+        if (ratio > kBlockRatio && grid_excess(context.stored, info.block.width) > kBlockExcess) {
             add("N306", "steps between 4x4 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
         }
         return;
     }
     // The first trace found counts, because blocks of 8x8 are also blocks of 4x4.
     const JpegTrace& jpeg = traces.jpeg;
-    if (jpeg.weight() > thresholds::kJpegTrace && stands_out(jpeg, subject.stored)) {
+    if (jpeg.weight() > thresholds::kJpegTrace && stands_out(jpeg, context.stored)) {
         add("N304",
             "the transform of 8x8 blocks is quantised as by JPEG of quality " + decimal(jpeg.quality(), 0) +
                 " (strength " + decimal(jpeg.strength, 2) + ")",
             jpeg.quality(), "quality");
         return;
     }
-    const double palette = palette_share(subject.stored);
+    const double palette = palette_share(context.stored);
     if (palette > thresholds::kPaletteShare) {
         add("N306", percent(palette) + " of the 4x4 blocks hold a palette of three or four colours", palette, "share");
         return;
     }
-    const double ratio = grid_ratio(subject.stored, 8);
+    const double ratio = grid_ratio(context.stored, 8);
     if (ratio > thresholds::kJpegRatio)
         add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
 }
@@ -233,9 +233,9 @@ void check_banding(const Lattice& lattice, Findings& findings) {
     finding.confidence = 0.95;
 }
 
-void check_seam(const Subject& subject, const Seam& seam, Findings& findings) {
+void check_seam(const CheckContext& context, const Seam& seam, Findings& findings) {
     if (seam.worst() < thresholds::kSeamRatio) return;
-    const Extent extent = subject.stored.extent();
+    const Extent extent = context.stored.extent();
     const bool right = seam.ratio_x > seam.ratio_y;
     Finding& finding =
         findings.add("N307", "the step across the " + std::string(right ? "left and right" : "top and bottom") +
@@ -249,16 +249,16 @@ void check_seam(const Subject& subject, const Seam& seam, Findings& findings) {
 
 }  // namespace
 
-Result<void> check_damage_rules(const Subject& subject, Findings& findings) {
-    if (!subject.has_vectors || subject.constant) return {};
+Result<void> check_damage_rules(const CheckContext& context, Findings& findings) {
+    if (!context.has_vectors || context.constant) return {};
     Traces traces;
-    if (auto done = measure_traces(subject, findings.wants("N307"), traces); !done) return done;
-    check_curve(subject, traces.centre, findings);
-    check_alpha(subject, findings);
-    check_seam(subject, traces.seam, findings);
-    if (!subject.sampled_ok) return {};
-    check_exchanged(subject, findings);
-    check_blocks(subject, traces, findings);
+    if (auto done = measure_traces(context, findings.wants("N307"), traces); !done) return done;
+    check_curve(context, traces.centre, findings);
+    check_alpha(context, findings);
+    check_seam(context, traces.seam, findings);
+    if (!context.sampled_ok) return {};
+    check_exchanged(context, findings);
+    check_blocks(context, traces, findings);
     check_banding(traces.lattice, findings);
     return {};
 }

@@ -8,6 +8,6 @@
 namespace tex::inline v1 {
 
 // Errors: out_of_memory.
-Result<void> check_damage_rules(const Subject& subject, Findings& findings);
+Result<void> check_damage_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

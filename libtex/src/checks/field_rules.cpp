@@ -62,14 +62,14 @@ void check_turned(const Turn& turn, Findings& findings) {
     finding.confidence = 0.95;
 }
 
-void check_noise(const Subject& subject, const Turn& turn, Findings& findings) {
+void check_noise(const CheckContext& context, const Turn& turn, Findings& findings) {
     double share = 1.0, correlation = 0.0;
     for (int k = 0; k < Turn::kScales; ++k) {
         // Fine noise hides a surface that larger scales show; where these show nothing, they do not count.
         if (turn.scale[k].rms() < kLeastRms && k > 0) continue;
         if (turn.scale[k].rms() < kLeastRms) return;
         share = std::min(share, turn.scale[k].curl_share());
-        correlation = std::max(correlation, std::abs(subject.curl.scale[k].correlation()));
+        correlation = std::max(correlation, std::abs(context.curl.scale[k].correlation()));
     }
     if (share < thresholds::kNoiseCurl || correlation > thresholds::kNoiseCorrelation) return;
     Finding& finding = findings.add("N310", percent(share) + " of the changes of slope are curl; noise has 50 %");
@@ -80,15 +80,15 @@ void check_noise(const Subject& subject, const Turn& turn, Findings& findings) {
 
 }  // namespace
 
-Result<void> check_field_rules(const Subject& subject, Findings& findings) {
-    if (!subject.sampled_ok || subject.curl.usable < kLeastUsable) return {};
-    if (subject.counts.share(Property::z_behind) > kMostBehind) return {};
-    if (std::abs(subject.curl.correlation) > kSoundCorrelation) return {};  // as in most maps: it saves time
+Result<void> check_field_rules(const CheckContext& context, Findings& findings) {
+    if (!context.sampled_ok || context.curl.usable < kLeastUsable) return {};
+    if (context.counts.share(Property::z_behind) > kMostBehind) return {};
+    if (std::abs(context.curl.correlation) > kSoundCorrelation) return {};  // as in most maps: it saves time
     if (!findings.wants("N309") && !findings.wants("N310")) return {};
-    const auto turn = measure_turn(subject.stored, subject.execution);
+    const auto turn = measure_turn(context.stored, context.execution);
     if (!turn) return turn.error();
     check_turned(*turn, findings);
-    check_noise(subject, *turn, findings);
+    check_noise(context, *turn, findings);
     return {};
 }
 

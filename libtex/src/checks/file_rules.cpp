@@ -89,15 +89,15 @@ std::string names_of(const std::vector<E>& values, const Named<E> (&table)[N]) {
     return names;
 }
 
-void check_engine(const Subject& subject, const EngineNeeds& needs, Findings& findings) {
+void check_engine(const CheckContext& context, const EngineNeeds& needs, Findings& findings) {
     std::vector<std::string> reasons;
-    const auto type = container_of(subject.file);
+    const auto type = container_of(context.file);
     if (type && std::find(needs.types.begin(), needs.types.end(), *type) == needs.types.end()) {
         reasons.push_back("does not read " + std::string(name_of(kContainerNames, *type)) + " but " +
                           names_of(needs.types, kContainerNames));
     }
-    const Texture& texture = subject.texture;
-    const Swizzle& swizzle = subject.stored.swizzle;
+    const Texture& texture = context.texture;
+    const Swizzle& swizzle = context.stored.swizzle;
     const bool is_read = std::any_of(needs.encodings.begin(), needs.encodings.end(),
                                      [&](Encoding encoding) { return holds_encoding(texture, swizzle, encoding); });
     if (!is_read) {
@@ -114,28 +114,28 @@ void check_engine(const Subject& subject, const EngineNeeds& needs, Findings& fi
     if (!message.empty()) findings.add("N113", message);
 }
 
-void check_astc_layout(const Subject& subject, Findings& findings) {
-    if (!is_astc(subject.texture.format) || !subject.has_vectors) return;
-    if (same_layout(kSwizzleXxxy, subject.stored.swizzle, 4)) return;
+void check_astc_layout(const CheckContext& context, Findings& findings) {
+    if (!is_astc(context.texture.format) || !context.has_vectors) return;
+    if (same_layout(kSwizzleXxxy, context.stored.swizzle, 4)) return;
     findings.add("N115",
-                 "the layout is " + layout_name(subject.stored.swizzle) + " instead of " + layout_name(kSwizzleXxxy));
+                 "the layout is " + layout_name(context.stored.swizzle) + " instead of " + layout_name(kSwizzleXxxy));
 }
 
 }  // namespace
 
-void check_file_rules(const Subject& subject, Findings& findings) {
-    const Texture& texture = subject.texture;
-    const Requirements& require = subject.options.require;
+void check_file_rules(const CheckContext& context, Findings& findings) {
+    const Texture& texture = context.texture;
+    const Requirements& require = context.options.require;
     for (const std::string& remark : texture.remarks) findings.add("N102", remark);
     if (texture.trailing_bytes > 0) findings.add("N104", trailing_text(texture.trailing_bytes));
     if (texture.orientation != 1)
         findings.add("N116", "the orientation is " + std::to_string(texture.orientation) + " instead of 1");
-    check_format(texture, subject.stored.swizzle, require, findings);
+    check_format(texture, context.stored.swizzle, require, findings);
     check_levels(texture, require, findings);
     check_extent(texture, require, findings);
-    if (texture.srgb) findings.add("N111", format_text(texture, subject.stored.swizzle) + ", as sRGB");
-    check_astc_layout(subject, findings);
-    if (require.engine) check_engine(subject, *require.engine, findings);
+    if (texture.srgb) findings.add("N111", format_text(texture, context.stored.swizzle) + ", as sRGB");
+    check_astc_layout(context, findings);
+    if (require.engine) check_engine(context, *require.engine, findings);
     if (require.y && texture.y_known && texture.y_axis != *require.y) {
         findings.add("N112", "the file says " + direction(texture.y_axis) + " instead of " + direction(*require.y));
     }

@@ -7,6 +7,6 @@
 
 namespace tex::inline v1 {
 
-void check_file_rules(const Subject& subject, Findings& findings);
+void check_file_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -17,7 +17,7 @@
 namespace tex::inline v1 {
 
 // A texture, its decoded base level, and measurements of it. If the swizzle has no x or no y, only the file is checked.
-struct Subject {
+struct CheckContext {
     const Texture& texture;
     const CheckOptions& options;
     const Execution& execution;

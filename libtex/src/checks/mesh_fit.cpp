@@ -23,8 +23,8 @@ constexpr double kOtherLengthShare = 0.05;  // of the texels: then a z that the 
 // Whether two decoders make the same of the map: the same vectors, from the same z.
 class SameDecoding {
 public:
-    explicit SameDecoding(const Subject& subject)
-        : z_counts_(subject.stored.has_z() && subject.counts.share(Property::off_length) > kOtherLengthShare) {}
+    explicit SameDecoding(const CheckContext& context)
+        : z_counts_(context.stored.has_z() && context.counts.share(Property::off_length) > kOtherLengthShare) {}
 
     bool operator()(Decoder a, Decoder b) const {
         return same_vectors(a, b) && (!z_counts_ || rebuilds_z(a) == rebuilds_z(b));
@@ -44,8 +44,8 @@ struct Candidate {
 // The other ways with the same direction of green: each kind of decoder with each kind of tangents.
 class Candidates {
 public:
-    Candidates(const Subject& subject, const SeamSamples& samples)
-        : subject_(subject), samples_(samples), same_(subject) {}
+    Candidates(const CheckContext& context, const SeamSamples& samples)
+        : subject_(context), samples_(samples), same_(context) {}
 
     Result<void> make() {
         for (const TangentMethod method : {TangentMethod::mikktspace, TangentMethod::meshopt}) {
@@ -88,7 +88,7 @@ private:
         if (compare_gaps(samples_, best.gaps, other.gaps).confidence >= kConfident) best = std::move(other);
     }
 
-    const Subject& subject_;
+    const CheckContext& subject_;
     const SeamSamples& samples_;
     SameDecoding same_;
     std::vector<Float4> mikktspace_, meshopt_;
@@ -125,20 +125,20 @@ std::string figures(const SeamEvidence& evidence) {
 
 }  // namespace
 
-YAxis y_on_mesh(const Subject& subject) {
-    if (subject.options.require.y) return *subject.options.require.y;
-    if (subject.texture.y_known) return subject.texture.y_axis;
-    return subject.options.mesh->decoder == Decoder::unreal ? YAxis::down : YAxis::up;
+YAxis y_on_mesh(const CheckContext& context) {
+    if (context.options.require.y) return *context.options.require.y;
+    if (context.texture.y_known) return context.texture.y_axis;
+    return context.options.mesh->decoder == Decoder::unreal ? YAxis::down : YAxis::up;
 }
 
-Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings) {
-    const SelectedPart& selected = subject.options.mesh->selected;
+Result<std::optional<SeamEvidence>> check_mesh_fit(const CheckContext& context, Findings& findings) {
+    const SelectedPart& selected = context.options.mesh->selected;
     const std::vector<SeamEdge> edges = find_seams(selected.part);
     if (edges.empty()) return std::optional<SeamEvidence>();
-    const SeamSamples samples(selected.part, edges, subject.stored, subject.options.mesh->scale);
-    const Extent extent = subject.stored.extent();
-    Candidates candidates(subject, samples);
-    const bool y_up = y_on_mesh(subject) == YAxis::up;
+    const SeamSamples samples(selected.part, edges, context.stored, context.options.mesh->scale);
+    const Extent extent = context.stored.extent();
+    Candidates candidates(context, samples);
+    const bool y_up = y_on_mesh(context) == YAxis::up;
     const Candidate given = candidates.given(y_up);
     const SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
     if (!findings.wants("N711")) return std::optional(evidence);
@@ -160,7 +160,7 @@ Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findi
         return std::optional(evidence);
     const SeamEvidence then = seam_evidence(samples, best.gaps, extent);
     Finding& finding =
-        findings.add("N711", difference_of(best, given, SameDecoding(subject)) + " (" + std::to_string(evidence.edges) +
+        findings.add("N711", difference_of(best, given, SameDecoding(context)) + " (" + std::to_string(evidence.edges) +
                                  " seam edges: " + figures(evidence) + "; then " + figures(then) + "; confidence " +
                                  decimal(verdict.confidence, 3) + ")");
     finding.figure = evidence.mean;

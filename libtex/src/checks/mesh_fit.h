@@ -7,13 +7,13 @@
 
 namespace tex::inline v1 {
 
-// Where green of the map points on the mesh of subject.options.mesh, which is not null: see MeshToCheck.
-[[nodiscard]] YAxis y_on_mesh(const Subject& subject);
+// Where green of the map points on the mesh of context.options.mesh, which is not null: see MeshToCheck.
+[[nodiscard]] YAxis y_on_mesh(const CheckContext& context);
 
-// Measures the seams as subject.options.mesh says that the map is decoded, and adds a finding if it was made for
+// Measures the seams as context.options.mesh says that the map is decoded, and adds a finding if it was made for
 // another decoder, other tangents or the other direction of green. Returns nullopt if there are no seams.
 //
-// Precondition: subject.options.mesh is not null, subject.has_vectors. Errors: as make_tangents().
-Result<std::optional<SeamEvidence>> check_mesh_fit(const Subject& subject, Findings& findings);
+// Precondition: context.options.mesh is not null, context.has_vectors. Errors: as make_tangents().
+Result<std::optional<SeamEvidence>> check_mesh_fit(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -7,8 +7,8 @@
 
 namespace tex::inline v1 {
 
-// Checks the mesh of subject.options.mesh, and the map on it. Returns nullopt if there is no mesh, no seam to measure,
+// Checks the mesh of context.options.mesh, and the map on it. Returns nullopt if there is no mesh, no seam to measure,
 // or no normals. Errors: as check() with a mesh.
-Result<std::optional<SeamEvidence>> check_mesh_rules(const Subject& subject, Findings& findings);
+Result<std::optional<SeamEvidence>> check_mesh_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

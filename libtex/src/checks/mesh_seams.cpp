@@ -138,7 +138,7 @@ private:
     int x_, y_, z_;
 };
 
-// The mean angle between the vector at a place and those one texel away, in degrees.
+// The mean angle between the vector at a sample and those one texel away, in degrees.
 double change_at(const TexelAt& texel_at, double x, double y, Vector3 here) {
     constexpr std::pair<double, double> kAround[] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
     const auto unit = [](Vector3 v) {
@@ -166,7 +166,7 @@ SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edge
 SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, Extent extent,
                          const TexelAt& texel_at)
     : part_(part), edges_(edges) {
-    // The place in the map, in texels.
+    // The sample in the map, in texels.
     const auto corner = [&](const SeamSide& side, std::size_t end) -> std::array<double, 2> {
         const Float2 uv = part.uvs.front()[part.indices[3 * side.triangle + side.corner[end]]];
         const auto v = static_cast<double>(uv.y);
@@ -183,39 +183,39 @@ SeamSamples::SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edge
         const int count = static_cast<int>(std::clamp(size / 2.0, 1.0, static_cast<double>(kMostPlaces)));
         for (int k = 0; k < count; ++k) {
             const double way = (k + 0.5) / count;
-            Place place;
-            place.edge = e;
-            place.weight = edges[e].length / count;
+            Sample sample;
+            sample.edge = e;
+            sample.weight = edges[e].length / count;
             for (std::size_t s = 0; s < 2; ++s) {
                 const auto p = corner(*sides[s], 0), q = corner(*sides[s], 1);
-                place.weights[s] = weights_at(*sides[s], way);
+                sample.weights[s] = weights_at(*sides[s], way);
                 const std::array<double, 2> at = {p[0] + way * (q[0] - p[0]), p[1] + way * (q[1] - p[1])};
-                place.texel[s] = texel_at(at[0], at[1]);
-                place.change += change_at(texel_at, at[0], at[1], place.texel[s]) / 2.0;
-                if (s == 0) place.at = at;
+                sample.texel[s] = texel_at(at[0], at[1]);
+                sample.change += change_at(texel_at, at[0], at[1], sample.texel[s]) / 2.0;
+                if (s == 0) sample.at = at;
             }
-            places_.push_back(place);
+            samples_.push_back(sample);
         }
     }
 }
 
 std::vector<Vector3> SeamSamples::gaps(const SeamSpace& space) const {
     std::vector<Vector3> gaps;
-    gaps.reserve(places_.size());
+    gaps.reserve(samples_.size());
     const TangentSpace tangent_space{part_, *space.tangents, 0, space.decoder};
     std::size_t edge = std::numeric_limits<std::size_t>::max();  // whose frames these are
     CornerFrames frames[2];
-    for (const Place& place : places_) {
-        if (place.edge != edge) {
-            edge = place.edge;
+    for (const Sample& sample : samples_) {
+        if (sample.edge != edge) {
+            edge = sample.edge;
             frames[0] = CornerFrames(tangent_space, edges_[edge].a.triangle);
             frames[1] = CornerFrames(tangent_space, edges_[edge].b.triangle);
         }
         Vector3 normal[2];
         for (std::size_t s = 0; s < 2; ++s) {
-            Vector3 t = read_texel(space.decoder, place.texel[s]);
+            Vector3 t = read_texel(space.decoder, sample.texel[s]);
             if (!space.y_up) t.y = -t.y;
-            normal[s] = decode(frames[s].at(place.weights[s]), t);
+            normal[s] = decode(frames[s].at(sample.weights[s]), t);
         }
         gaps.push_back(normal[0] - normal[1]);
     }
@@ -223,7 +223,7 @@ std::vector<Vector3> SeamSamples::gaps(const SeamSpace& space) const {
 }
 
 SeamVerdict compare_gaps(const SeamSamples& samples, const std::vector<Vector3>& a, const std::vector<Vector3>& b) {
-    const auto& places = samples.places();
+    const auto& places = samples.samples();
     const auto weight = [&](std::size_t k) {  // large gaps on both sides are noise
         return places[k].weight / (kQuantum * kQuantum + std::min(dot(a[k], a[k]), dot(b[k], b[k])));
     };

@@ -48,7 +48,7 @@ public:
     // With the texels of a bilinear filter that repeats, whose x and y are multiplied by `scale`.
     SeamSamples(const MeshPart& part, const std::vector<SeamEdge>& edges, const Stored& stored, double scale = 1.0);
 
-    struct Place {
+    struct Sample {
         std::size_t edge = 0;
         std::array<std::array<double, 3>, 2> weights{};  // of the corners of both triangles
         std::array<Vector3, 2> texel;                    // as stored
@@ -56,15 +56,15 @@ public:
         double weight = 0.0;                             // length in object space
         double change = 0.0;  // the mean angle to the four texels around, of both sides, in degrees
     };
-    [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+    [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
 
-    // For each place, the difference between the decoded normals of both sides.
+    // For each sample, the difference between the decoded normals of both sides.
     [[nodiscard]] std::vector<Vector3> gaps(const SeamSpace& space) const;
 
 private:
     const MeshPart& part_;
     const std::vector<SeamEdge>& edges_;
-    std::vector<Place> places_;
+    std::vector<Sample> samples_;
 };
 
 // How surely gaps `b` are what the map was made for, rather than gaps `a`. If they are, a = noise + (a - b), so the

@@ -107,13 +107,13 @@ void check_fade(const std::vector<LevelMeasure>& levels, Findings& findings) {
 }
 
 // Decodes what measure_level() reads of level k.
-Result<Image> decode_windows(const Subject& subject, int k) {
-    const Level& level = subject.texture.levels[static_cast<std::size_t>(k)];
+Result<Image> decode_windows(const CheckContext& context, int k) {
+    const Level& level = context.texture.levels[static_cast<std::size_t>(k)];
     const std::vector<Rect> windows = sample_windows(level.extent);
     PlaneNeeds needs;
     needs.channels = 0;
     for (const Component component : {Component::x, Component::y, Component::z}) {
-        const int channel = subject.stored.channel(component);
+        const int channel = context.stored.channel(component);
         if (channel >= 0) needs.channels |= 1u << channel;
     }
     needs.rows = [&](int first, int count) {
@@ -121,40 +121,40 @@ Result<Image> decode_windows(const Subject& subject, int k) {
             return first < window.y + window.height && window.y < first + count;
         });
     };
-    return decode_planes(subject.texture, level, needs, subject.execution);
+    return decode_planes(context.texture, level, needs, context.execution);
 }
 
 }  // namespace
 
-Result<void> check_mip_rules(const Subject& subject, Findings& findings) {
-    const Texture& texture = subject.texture;
-    if (!subject.has_vectors || subject.constant || texture.levels.size() < 2) return {};
-    auto averages = base_averages(subject.stored, subject.execution);
+Result<void> check_mip_rules(const CheckContext& context, Findings& findings) {
+    const Texture& texture = context.texture;
+    if (!context.has_vectors || context.constant || texture.levels.size() < 2) return {};
+    auto averages = base_averages(context.stored, context.execution);
     std::vector<LevelMeasure> levels;
     std::optional<Plane<float>> background;  // the share of it in each texel of the level
     for (int k = 1; k < static_cast<int>(texture.levels.size()); ++k) {
-        if (k > 1) averages = averages_of(*averages, subject.execution);
+        if (k > 1) averages = averages_of(*averages, context.execution);
         if (!averages) return averages.error();
         const Extent extent = averages->extent();
         if (extent.width < kLeastSide || extent.height < kLeastSide) break;
-        if (subject.background)
+        if (context.background)
             background = background ? background_share(*background)
-                                    : background_share(*subject.background, subject.stored.extent());
-        const auto image = decode_windows(subject, k);
+                                    : background_share(*context.background, context.stored.extent());
+        const auto image = decode_windows(context, k);
         if (!image) return image.error();
-        Stored stored = subject.stored;
+        Stored stored = context.stored;
         stored.image = &*image;
         LevelMeasure measure;
         if (auto done =
-                measure_level(stored, *averages, k, subject.execution, measure, background ? &*background : nullptr);
+                measure_level(stored, *averages, k, context.execution, measure, background ? &*background : nullptr);
             !done)
             return done.error();
         if (measure.signal > kLeastSignal) levels.push_back(measure);
     }
-    if (!subject.options.any_length)
-        check_lengths(levels, subject.counts.mean_length, subject.stored.has_z(), findings);
+    if (!context.options.any_length)
+        check_lengths(levels, context.counts.mean_length, context.stored.has_z(), findings);
     // Palettes of 5:6:5 bits keep less of fine noise than BC5 and DXT5nm do.
-    const bool is_coarse = subject.stored.in_blocks && subject.stored.has_z();
+    const bool is_coarse = context.stored.in_blocks && context.stored.has_z();
     check_relations(levels, (is_coarse ? kCoarseRelated : 1.0) * thresholds::kLevelRelated, findings);
     check_fade(levels, findings);
     return {};

@@ -8,6 +8,6 @@
 namespace tex::inline v1 {
 
 // Errors: cancelled, out_of_memory.
-Result<void> check_mip_rules(const Subject& subject, Findings& findings);
+Result<void> check_mip_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

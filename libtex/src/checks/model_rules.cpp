@@ -60,11 +60,11 @@ bool has_both_signs(const SelectedPart& selected) {
 
 }  // namespace
 
-void check_model_rules(const Subject& subject, Findings& findings) {
-    if (subject.options.model == nullptr) return;
-    const MapInModel& in = *subject.options.model;
-    if (subject.has_vectors && subject.stored.channel(Component::z) < 0) {
-        findings.add("N801", "its format is " + std::string(name_of(kFormatNames, subject.texture.format)) +
+void check_model_rules(const CheckContext& context, Findings& findings) {
+    if (context.options.model == nullptr) return;
+    const MapInModel& in = *context.options.model;
+    if (context.has_vectors && context.stored.channel(Component::z) < 0) {
+        findings.add("N801", "its format is " + std::string(name_of(kFormatNames, context.texture.format)) +
                                  ", which holds x and y");
     }
     check_uses(in, findings);
@@ -74,7 +74,7 @@ void check_model_rules(const Subject& subject, Findings& findings) {
         finding.figure = in.map.scale;
         finding.unit = "ratio";
     }
-    if (in.map.is_double_sided && subject.options.mesh != nullptr && has_both_signs(subject.options.mesh->selected))
+    if (in.map.is_double_sided && context.options.mesh != nullptr && has_both_signs(context.options.mesh->selected))
         findings.add("N805", "doubleSided is true, and w of tangents is 1 and -1");
 }
 

@@ -7,7 +7,7 @@
 
 namespace tex::inline v1 {
 
-// Checks how the model of subject.options.model uses the map, if there is a model.
-void check_model_rules(const Subject& subject, Findings& findings);
+// Checks how the model of context.options.model uses the map, if there is a model.
+void check_model_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -33,32 +33,32 @@ bool all_rows(const Image& image, int channel, int other, Row&& row) {
 }
 
 // The channel that A repeats, or -1.
-int repeated_by_alpha(const Subject& subject) {
-    const int width = subject.stored.extent().width;
+int repeated_by_alpha(const CheckContext& context) {
+    const int width = context.stored.extent().width;
     for (int channel = 0; channel < kAlpha; ++channel) {
         const auto is_same = [width](const float* a, const float* b) { return std::equal(a, a + width, b); };
-        if (all_rows(subject.base, channel, kAlpha, is_same)) return channel;
+        if (all_rows(context.base, channel, kAlpha, is_same)) return channel;
     }
     return -1;
 }
 
-void check_free_alpha(const Subject& subject, Findings& findings) {
-    const Component held = subject.stored.swizzle[kAlpha];
-    if (subject.base.planes.size() <= kAlpha || held == Component::x || held == Component::y || held == Component::z)
+void check_free_alpha(const CheckContext& context, Findings& findings) {
+    const Component held = context.stored.swizzle[kAlpha];
+    if (context.base.planes.size() <= kAlpha || held == Component::x || held == Component::y || held == Component::z)
         return;
-    if (!(subject.counts.high[kAlpha] > subject.counts.low[kAlpha])) return;
-    if (const int channel = repeated_by_alpha(subject); channel >= 0) {
+    if (!(context.counts.high[kAlpha] > context.counts.low[kAlpha])) return;
+    if (const int channel = repeated_by_alpha(context); channel >= 0) {
         findings.add("N218", std::string("A equals ") + letter(channel) + " in every texel");
         return;
     }
-    const int width = subject.stored.extent().width;
+    const int width = context.stored.extent().width;
     std::int64_t zeros = 0;
     const auto is_mask = [&](const float* a, const float*) {
         zeros += std::count(a, a + width, 0.0f);
         return std::all_of(a, a + width, [](float value) { return value == 0.0f || value == 1.0f; });
     };
-    if (!all_rows(subject.base, kAlpha, kAlpha, is_mask)) return;
-    const double share = static_cast<double>(zeros) / static_cast<double>(subject.stored.extent().texels());
+    if (!all_rows(context.base, kAlpha, kAlpha, is_mask)) return;
+    const double share = static_cast<double>(zeros) / static_cast<double>(context.stored.extent().texels());
     Finding& finding = findings.add("N217", "A is 0 in " + percent(share) + " of the texels and 1 in all others");
     finding.figure = share;
     finding.unit = "share";
@@ -66,28 +66,28 @@ void check_free_alpha(const Subject& subject, Findings& findings) {
 
 // Whether the slopes of a surface are those with a rebuilt z. Vectors of uneven length do not follow x and y either,
 // but their slopes do not depend on their length.
-Result<bool> has_better_slopes_without_z(const Subject& subject) {
+Result<bool> has_better_slopes_without_z(const CheckContext& context) {
     constexpr double kBetter = 0.02;  // of the correlation of curl
-    Stored without = subject.stored;
+    Stored without = context.stored;
     for (Component& held : without.swizzle) held = held == Component::z ? Component::other : held;
-    const auto curl = measure_curl(without, subject.execution);
+    const auto curl = measure_curl(without, context.execution);
     if (!curl) return curl.error();
-    return std::abs(curl->correlation) > std::abs(subject.curl.correlation) + kBetter;
+    return std::abs(curl->correlation) > std::abs(context.curl.correlation) + kBetter;
 }
 
 // Whether blue follows x and y, as z does.
-Result<void> check_stored_z(const Subject& subject, Findings& findings) {
+Result<void> check_stored_z(const CheckContext& context, Findings& findings) {
     constexpr std::size_t kBlue = 2;
-    const Stored& stored = subject.stored;
-    const TexelCounts& counts = subject.counts;
-    const bool is_floating = format_info(subject.texture.format).sample == SampleKind::floating;
-    if (!subject.sampled_ok || subject.options.any_length || is_floating || stored.swizzle[kBlue] != Component::z ||
+    const Stored& stored = context.stored;
+    const TexelCounts& counts = context.counts;
+    const bool is_floating = format_info(context.texture.format).sample == SampleKind::floating;
+    if (!context.sampled_ok || context.options.any_length || is_floating || stored.swizzle[kBlue] != Component::z ||
         counts.high[kBlue] - counts.low[kBlue] <= (stored.in_blocks ? kBlockError : 0.0f))
         return {};
     if (std::max(std::abs(counts.mean_x), std::abs(counts.mean_y)) > kMostLean) return {};
-    const Plane<float>&x = subject.base.planes[static_cast<std::size_t>(stored.channel(Component::x))],
-          &y = subject.base.planes[static_cast<std::size_t>(stored.channel(Component::y))],
-          &z = subject.base.planes[kBlue];
+    const Plane<float>&x = context.base.planes[static_cast<std::size_t>(stored.channel(Component::x))],
+          &y = context.base.planes[static_cast<std::size_t>(stored.channel(Component::y))],
+          &z = context.base.planes[kBlue];
     ZEvidence evidence;
     for (int j = 0; j < stored.extent().height; j += z_step(stored.extent().height))
         evidence.add_row(x.row(j), y.row(j), z.row(j), !stored.is_signed, stored.extent().width);
@@ -95,7 +95,7 @@ Result<void> check_stored_z(const Subject& subject, Findings& findings) {
     Result<bool> is_sure = evidence.is_surely_something_else();
     if (!*is_sure && evidence.is_something_else() && evidence.correlation() < kZFollows) {
         // z of uneven vectors is never below 0.
-        is_sure = counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(subject);
+        is_sure = counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(context);
     }
     if (!is_sure) return is_sure.error();
     if (*is_sure) {
@@ -108,10 +108,10 @@ Result<void> check_stored_z(const Subject& subject, Findings& findings) {
 
 }  // namespace
 
-Result<void> check_other_rules(const Subject& subject, Findings& findings) {
-    if (!subject.has_vectors) return {};
-    check_free_alpha(subject, findings);
-    return check_stored_z(subject, findings);
+Result<void> check_other_rules(const CheckContext& context, Findings& findings) {
+    if (!context.has_vectors) return {};
+    check_free_alpha(context, findings);
+    return check_stored_z(context, findings);
 }
 
 }  // namespace tex::inline v1

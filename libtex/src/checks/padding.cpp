@@ -12,7 +12,7 @@
 
 #include "checks/thresholds.h"
 #include "surface/nearest.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -135,7 +135,7 @@ PaddingMeasure measure_of(const std::vector<Cell>& cells, int level) {
 }  // namespace
 
 Result<PaddingMeasure> measure_padding(const Stored& stored, Plane<std::int32_t>& charts, const Execution& execution) {
-    return guarded([&]() -> Result<PaddingMeasure> {
+    return no_throw([&]() -> Result<PaddingMeasure> {
         if (const auto marked = mark_background(stored, charts, execution); !marked) return marked.error();
         Extent extent = charts.extent();
         std::vector<Cell> cells;

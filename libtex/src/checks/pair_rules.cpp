@@ -47,10 +47,10 @@ void add_window(const Slopes& slopes, Rect window, const Plane<float>& height, i
 
 }  // namespace
 
-std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings) {
-    const HeightField* field = subject.options.height;
-    if (field == nullptr || !subject.has_vectors || subject.constant) return std::nullopt;
-    const Extent extent = subject.stored.extent();
+std::optional<PairEvidence> check_pair_rules(const CheckContext& context, Findings& findings) {
+    const HeightField* field = context.options.height;
+    if (field == nullptr || !context.has_vectors || context.constant) return std::nullopt;
+    const Extent extent = context.stored.extent();
     if (field->height.extent() != extent) {
         findings.add("N601", "the height map is " + extent_text(field->height.extent()) + ", the normal map " +
                                  extent_text(extent));
@@ -58,7 +58,7 @@ std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& f
     }
     Fit fits[2 * kReach + 1][2 * kReach + 1];
     for (const Rect& window : sample_windows(extent)) {
-        const Slopes slopes = slopes_of(subject.stored, window);
+        const Slopes slopes = slopes_of(context.stored, window);
         for (int dy = -kReach; dy <= kReach; ++dy) {
             for (int dx = -kReach; dx <= kReach; ++dx) {
                 add_window(slopes, window, field->height, dx, dy, fits[dy + kReach][dx + kReach]);

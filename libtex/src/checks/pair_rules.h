@@ -7,8 +7,8 @@
 
 namespace tex::inline v1 {
 
-// Checks whether the normals follow from subject.options.height. Returns nullopt if there are no heights, or no slopes
+// Checks whether the normals follow from context.options.height. Returns nullopt if there are no heights, or no slopes
 // to compare.
-std::optional<PairEvidence> check_pair_rules(const Subject& subject, Findings& findings);
+std::optional<PairEvidence> check_pair_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

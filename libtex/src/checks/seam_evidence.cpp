@@ -40,7 +40,7 @@ SeamEvidence seam_evidence(const SeamSamples& samples, const std::vector<Vector3
     SeamEvidence evidence;
     std::vector<std::pair<double, double>> angles;  // with their weights
     double all = 0.0, change = 0.0, of_edge = 0.0, count = 0.0;
-    const auto& places = samples.places();
+    const auto& places = samples.samples();
     for (std::size_t k = 0; k < places.size(); ++k) {
         const double angle = seam_degrees(gaps[k]);
         angles.emplace_back(angle, places[k].weight);

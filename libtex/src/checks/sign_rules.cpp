@@ -28,24 +28,24 @@ std::optional<Format> twin_of(Format format) {
 
 }  // namespace
 
-Result<void> check_sign_rules(const Subject& subject, Findings& findings) {
-    const std::optional<Format> twin = twin_of(subject.texture.format);
-    const double share = subject.counts.share(Property::beyond_unit);
-    if (!twin || !subject.has_vectors || share < kWrongShare || !findings.wants("N311")) return {};
+Result<void> check_sign_rules(const CheckContext& context, Findings& findings) {
+    const std::optional<Format> twin = twin_of(context.texture.format);
+    const double share = context.counts.share(Property::beyond_unit);
+    if (!twin || !context.has_vectors || share < kWrongShare || !findings.wants("N311")) return {};
     Texture other;
     other.format = *twin;
-    other.levels = {subject.texture.levels.front()};
-    const auto image = decode(other, 0, subject.execution);
+    other.levels = {context.texture.levels.front()};
+    const auto image = decode(other, 0, context.execution);
     if (!image) return image.error();
-    Stored stored = subject.stored;
+    Stored stored = context.stored;
     stored.image = &*image;
     stored.is_signed = !stored.is_signed;
-    const auto counts = count_texels(stored, subject.execution);
+    const auto counts = count_texels(stored, context.execution);
     if (!counts) return counts.error();
     const double other_share = counts->share(Property::beyond_unit);
     if (other_share > kRightShare) return {};
     const auto name = [](Format format) { return std::string(name_of(kFormatNames, format)); };
-    Finding& finding = findings.add("N311", "read as " + name(subject.texture.format) + ", " + percent(share) +
+    Finding& finding = findings.add("N311", "read as " + name(context.texture.format) + ", " + percent(share) +
                                                 " of the texels have x^2 + y^2 above 1; read as " + name(*twin) + ", " +
                                                 (other_share > 0.0 ? percent(other_share) : "none"));
     finding.figure = share;

@@ -189,8 +189,8 @@ double area_in_map(const MeshPart& part, std::size_t triangle) {
     return part.v_axis == YAxis::up ? area : -area;
 }
 
-Result<void> check_tangent_rules(const Subject& subject, Findings& findings) {
-    const SelectedPart& selected = subject.options.mesh->selected;
+Result<void> check_tangent_rules(const CheckContext& context, Findings& findings) {
+    const SelectedPart& selected = context.options.mesh->selected;
     check_quads(selected.part, findings);
     if (selected.has_normal_map && !selected.has_tangents) {
         findings.add("N701", std::string("they come from ") +
@@ -198,7 +198,7 @@ Result<void> check_tangent_rules(const Subject& subject, Findings& findings) {
     }
     if (selected.source != TangentSource::file) return {};
     report(selected, count_tangents(selected), findings);
-    return compare_with_methods(selected, subject.execution, findings);
+    return compare_with_methods(selected, context.execution, findings);
 }
 
 }  // namespace tex::inline v1

@@ -17,7 +17,7 @@ inline constexpr double kDegrees = 57.295779513082320877;  // of a radian
 // its sign.
 double area_in_map(const MeshPart& part, std::size_t triangle);
 
-// Precondition: subject.options.mesh is not null. Errors: as make_tangents().
-Result<void> check_tangent_rules(const Subject& subject, Findings& findings);
+// Precondition: context.options.mesh is not null. Errors: as make_tangents().
+Result<void> check_tangent_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -36,10 +36,10 @@ void set_texel(Finding& finding, int column, int row) {
     finding.row = row;
 }
 
-Finding& add_counted(const Subject& subject, Findings& findings, std::string_view id, Property property,
+Finding& add_counted(const CheckContext& context, Findings& findings, std::string_view id, Property property,
                      const std::string& what) {
-    const Tally& tally = subject.counts[property];
-    const double share = subject.counts.share(property);
+    const Tally& tally = context.counts[property];
+    const double share = context.counts.share(property);
     Finding& finding = findings.add(
         id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
     finding.figure = share;
@@ -48,41 +48,41 @@ Finding& add_counted(const Subject& subject, Findings& findings, std::string_vie
     return finding;
 }
 
-void check_lengths(const Subject& subject, Findings& findings) {
-    const TexelCounts& counts = subject.counts;
+void check_lengths(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
     if (counts[Property::not_finite].count > 0)
-        add_counted(subject, findings, "N204", Property::not_finite, " are NaN or infinite");
-    if (counts.share(Property::null_vector) > (subject.background ? kNullShareBesideGrey : kNullShare)) {
-        add_counted(subject, findings, "N205", Property::null_vector, " are shorter than 0.1");
+        add_counted(context, findings, "N204", Property::not_finite, " are NaN or infinite");
+    if (counts.share(Property::null_vector) > (context.background ? kNullShareBesideGrey : kNullShare)) {
+        add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
-    if (!subject.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
-        add_counted(subject, findings, "N201", Property::off_length,
+    if (!context.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
+        add_counted(context, findings, "N201", Property::off_length,
                     " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
                         ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
                         decimal(static_cast<double>(counts.max_length), 2) + ")");
     }
     if (counts.share(Property::z_below) > kBelowShare)
-        add_counted(subject, findings, "N202", Property::z_below, " have z below zero");
-    if (!subject.stored.has_z() && counts.share(Property::beyond_unit) > kBeyondShare) {
-        add_counted(subject, findings, "N203", Property::beyond_unit, " have x^2 + y^2 above 1");
+        add_counted(context, findings, "N202", Property::z_below, " have z below zero");
+    if (!context.stored.has_z() && counts.share(Property::beyond_unit) > kBeyondShare) {
+        add_counted(context, findings, "N203", Property::beyond_unit, " have x^2 + y^2 above 1");
     }
 }
 
-void check_background(const Subject& subject, Findings& findings) {
-    if (!subject.background) return;
-    const Background& background = *subject.background;
-    const Extent extent = subject.stored.extent();
+void check_background(const CheckContext& context, Findings& findings) {
+    if (!context.background) return;
+    const Background& background = *context.background;
+    const Extent extent = context.stored.extent();
     const double share = static_cast<double>(background.texels) / static_cast<double>(extent.texels());
     Finding& finding = findings.add(
-        "N215", percent(share) + " of the texels are background: " + background_name(background, subject.stored) +
+        "N215", percent(share) + " of the texels are background: " + background_name(background, context.stored) +
                     ", which is no normal; the first at " + texel_text(background.column, background.row));
     finding.figure = share;
     finding.unit = "share";
     set_texel(finding, background.column, background.row);
 }
 
-void check_means(const Subject& subject, Findings& findings) {
-    const TexelCounts& counts = subject.counts;
+void check_means(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
     const double lean = std::sqrt(counts.mean_x * counts.mean_x + counts.mean_y * counts.mean_y);
     const double angle = math::atan(lean / std::max(counts.mean_z, 1e-6)) * 180.0 / math::kPi;
     if (angle > kLeanDegrees) {
@@ -105,9 +105,9 @@ void check_means(const Subject& subject, Findings& findings) {
     }
 }
 
-void check_channels(const Subject& subject, Findings& findings) {
-    const TexelCounts& counts = subject.counts;
-    const Stored& stored = subject.stored;
+void check_channels(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
+    const Stored& stored = context.stored;
     const auto range = [&](int channel) {
         return counts.high[static_cast<std::size_t>(channel)] - counts.low[static_cast<std::size_t>(channel)];
     };
@@ -128,16 +128,16 @@ void check_channels(const Subject& subject, Findings& findings) {
                                  " everywhere");
     }
     if (counts[Property::red_not_one].count > 0) {
-        add_counted(subject, findings, "N211", Property::red_not_one, " have R below 255");
+        add_counted(context, findings, "N211", Property::red_not_one, " have R below 255");
     }
     if (counts[Property::alpha_not_one].count > 0) {
-        add_counted(subject, findings, "N212", Property::alpha_not_one, " have A below 255");
+        add_counted(context, findings, "N212", Property::alpha_not_one, " have A below 255");
     }
     if (counts.share(Property::z_behind) > kBehindShare) {
-        add_counted(subject, findings, "N213", Property::z_behind, " point away from the surface");
+        add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
         // Object-space maps hold unit vectors, although rounded or compressed ones.
-        if (!subject.options.any_length && counts.share(Property::off_length) > kColorShare)
-            add_counted(subject, findings, "N214", Property::off_length, " are off unit length by more than two codes");
+        if (!context.options.any_length && counts.share(Property::off_length) > kColorShare)
+            add_counted(context, findings, "N214", Property::off_length, " are off unit length by more than two codes");
     }
 }
 
@@ -154,36 +154,36 @@ double extreme_share(const Plane<float>& channel) {
 
 // Occlusion in red, roughness in green and metalness in blue: blue is 0 or 1, as no z is, and red is far from the 0.5
 // of an upright vector.
-void check_surface_data(const Subject& subject, Findings& findings) {
-    const Stored& stored = subject.stored;
-    if (subject.constant || subject.options.any_length || stored.is_signed || stored.swizzle[0] != Component::x ||
+void check_surface_data(const CheckContext& context, Findings& findings) {
+    const Stored& stored = context.stored;
+    if (context.constant || context.options.any_length || stored.is_signed || stored.swizzle[0] != Component::x ||
         stored.swizzle[1] != Component::y || stored.swizzle[2] != Component::z)
         return;
-    if (subject.counts.share(Property::off_length) <= kColorShare || std::abs(subject.counts.mean_x) <= kFarMean)
+    if (context.counts.share(Property::off_length) <= kColorShare || std::abs(context.counts.mean_x) <= kFarMean)
         return;
-    const double share = extreme_share(subject.base.planes[2]);
+    const double share = extreme_share(context.base.planes[2]);
     if (share < kExtremeShare) return;
     Finding& finding =
         findings.add("N216", "blue is nearly 0 or 1 in " + percent(share) + " of the texels, red is " +
-                                 decimal(0.5 + 0.5 * subject.counts.mean_x, 2) + " in the mean, and " +
-                                 percent(subject.counts.share(Property::off_length)) + " are off unit length");
+                                 decimal(0.5 + 0.5 * context.counts.mean_x, 2) + " in the mean, and " +
+                                 percent(context.counts.share(Property::off_length)) + " are off unit length");
     finding.figure = share;
     finding.unit = "share";
 }
 
 }  // namespace
 
-void check_value_rules(const Subject& subject, Findings& findings) {
-    if (format_info(subject.texture.format).channels == 1) findings.add("N210", "the file has one channel alone");
-    if (!subject.has_vectors) return;
-    if (subject.constant && subject.counts.texels > 1) {
+void check_value_rules(const CheckContext& context, Findings& findings) {
+    if (format_info(context.texture.format).channels == 1) findings.add("N210", "the file has one channel alone");
+    if (!context.has_vectors) return;
+    if (context.constant && context.counts.texels > 1) {
         findings.add("N206", "every texel is the same as the first").unit = "";
     }
-    check_background(subject, findings);
-    check_lengths(subject, findings);
-    check_means(subject, findings);
-    check_channels(subject, findings);
-    check_surface_data(subject, findings);
+    check_background(context, findings);
+    check_lengths(context, findings);
+    check_means(context, findings);
+    check_channels(context, findings);
+    check_surface_data(context, findings);
 }
 
 }  // namespace tex::inline v1

@@ -7,6 +7,6 @@
 
 namespace tex::inline v1 {
 
-void check_value_rules(const Subject& subject, Findings& findings);
+void check_value_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -12,7 +12,7 @@
 #include "files/pending_file.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
@@ -32,7 +32,7 @@ AtomicFile::AtomicFile(AtomicFile&&) noexcept = default;
 AtomicFile::~AtomicFile() = default;
 
 Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
-    return guarded([&]() -> Result<AtomicFile> {
+    return no_throw([&]() -> Result<AtomicFile> {
         if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
         auto state = std::make_unique<State>(State{path, options});
         if (options.follow_links || named_descriptor(path)) {
@@ -50,7 +50,7 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
 }
 
 Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         if (state_->through) {
             state_->through->hold(offset, bytes);
             return {};
@@ -66,7 +66,7 @@ Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byt
 }
 
 Result<void> AtomicFile::commit() {
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         if (state_->through) return state_->through->write_held();
         const AtomicFileOptions& options = state_->options;
         PendingFile& pending = *state_->pending;

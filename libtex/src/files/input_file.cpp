@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "files/system_error.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -39,7 +39,7 @@ Result<Descriptor> open_descriptor(const std::string& path) {
 }  // namespace
 
 Result<InputFile> InputFile::open(const std::string& path) {
-    return guarded([&]() -> Result<InputFile> {
+    return no_throw([&]() -> Result<InputFile> {
         InputFile file;
         file.path_ = path;
         Result<Descriptor> fd = open_descriptor(path);
@@ -77,7 +77,7 @@ Result<void> InputFile::read_head() {
 }
 
 Result<InputFile> InputFile::from_descriptor(const std::string& name, Descriptor fd, std::int64_t start) {
-    return guarded([&]() -> Result<InputFile> {
+    return no_throw([&]() -> Result<InputFile> {
         InputFile file;
         file.path_ = name;
         file.fd_ = std::move(fd);
@@ -91,7 +91,7 @@ Result<InputFile> InputFile::from_descriptor(const std::string& name, Descriptor
 }
 
 Result<InputFile> InputFile::from_memory(const std::string& name, std::vector<std::byte> bytes) {
-    return guarded([&]() -> Result<InputFile> {
+    return no_throw([&]() -> Result<InputFile> {
         if (bytes.empty()) return Error{ErrorCode::bad_data, name, "is empty"};
         InputFile file;
         file.path_ = name;
@@ -155,7 +155,7 @@ Result<std::size_t> InputFile::read_at(std::int64_t offset, std::byte* data, std
 }
 
 Result<std::vector<std::byte>> InputFile::read_rest(std::int64_t limit) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         const Error too_large{ErrorCode::unsupported, path_,
                               "larger than " + std::to_string(limit) + " bytes, the most that is read"};
         if (size_ && *size_ > limit) return too_large;

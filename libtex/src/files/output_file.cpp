@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "files/descriptor.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -25,7 +25,7 @@ bool is_written_through(const std::string& path) {
 
 Result<std::unique_ptr<OutputFile>> OutputFile::open(const std::string& path, std::size_t bytes, Opened when,
                                                      const AtomicFileOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<OutputFile>> {
+    return no_throw([&]() -> Result<std::unique_ptr<OutputFile>> {
         std::unique_ptr<OutputFile> output(new OutputFile(path, options));
         const bool late = when == Opened::late && is_written_through(path);
         output->holds_ = bytes <= kWrittenAtOnce || late;
@@ -41,7 +41,7 @@ Result<std::unique_ptr<OutputFile>> OutputFile::open(const std::string& path, st
 
 Result<void> OutputFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
     if (!holds_) return file_->write_at(offset, bytes);
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         const auto at = static_cast<std::size_t>(offset);
         const std::lock_guard lock(mutex_);
         held_.resize(std::max(held_.size(), at + bytes.size()));

@@ -189,7 +189,7 @@ Result<Descriptor> open_named(const Target& target, std::string& name, Unfinishe
     return file;
 }
 
-Result<void> name_nameless(int fd, const Target& target, bool no_clobber) {
+Result<void> link_nameless(int fd, const Target& target, bool no_clobber) {
     const auto link = [&](const std::string& name) { return give_name(fd, target.folder.get(), name); };
     if (!target.existing || no_clobber) {
         if (link(target.name)) return {};
@@ -259,7 +259,7 @@ std::string PendingFile::complete_path() const { return path_of_open(descriptor(
 
 Result<void> PendingFile::put_into_place(bool no_clobber) {
     const Target& target = state_->target;
-    if (state_->temporary.empty()) return name_nameless(descriptor(), target, no_clobber);
+    if (state_->temporary.empty()) return link_nameless(descriptor(), target, no_clobber);
     const std::string temporary = std::exchange(state_->temporary, {});
     int failed = 0;
     {

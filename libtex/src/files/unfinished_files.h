@@ -3,7 +3,7 @@
 //
 // A signal handler may run on any thread, while other threads create, rename and remove files. Every file that it
 // removes must be a file of this process under the name that this process gave it: once a file has been renamed,
-// another process may use its temporary name. Every change to such names therefore takes place in a section, during
+// another process may use its temporary name. Every change to such names therefore takes entry in a section, during
 // which
 //
 // * this thread handles no signal: a handler that waits for a section never waits for the thread that it has
@@ -52,9 +52,9 @@ public:
     static void remove_all() noexcept;
 
 private:
-    struct Place;
+    struct Entry;
     friend struct UnfinishedFiles;
-    Place* place_;
+    Entry* entry_;
 };
 
 }  // namespace tex::inline v1

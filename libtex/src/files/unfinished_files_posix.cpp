@@ -15,30 +15,30 @@ namespace tex::inline v1 {
 
 // An element of a list that only grows, to the greatest number of files that existed at once. A thread that walks
 // through the list needs no lock.
-struct UnfinishedFile::Place {
+struct UnfinishedFile::Entry {
     std::atomic<bool> taken{true};
     std::atomic<bool> exists{false};  // whether the file exists; `folder` and `name` are then set
     int folder = -1;
     char name[NAME_MAX + 1] = {};
-    Place* next = nullptr;
+    Entry* next = nullptr;
 };
 
 struct UnfinishedFiles {
-    using Place = UnfinishedFile::Place;
+    using Entry = UnfinishedFile::Entry;
 
     // The number of sections that are running, and a bit that forbids new ones.
     static constexpr unsigned kClosed = 1u << 31;
     static inline std::atomic<unsigned> sections{0};
-    static inline std::atomic<Place*> first{nullptr};
-    static_assert(std::atomic<unsigned>::is_always_lock_free && std::atomic<Place*>::is_always_lock_free &&
+    static inline std::atomic<Entry*> first{nullptr};
+    static_assert(std::atomic<unsigned>::is_always_lock_free && std::atomic<Entry*>::is_always_lock_free &&
                   std::atomic<bool>::is_always_lock_free);
 
-    static Place* take() {
-        for (Place* place = first; place != nullptr; place = place->next) {
+    static Entry* take() {
+        for (Entry* entry = first; entry != nullptr; entry = entry->next) {
             bool taken = false;
-            if (place->taken.compare_exchange_strong(taken, true)) return place;
+            if (entry->taken.compare_exchange_strong(taken, true)) return entry;
         }
-        auto* made = new Place;
+        auto* made = new Entry;
         made->next = first;
         while (!first.compare_exchange_weak(made->next, made)) {
         }
@@ -78,21 +78,21 @@ NameSection::~NameSection() {
     pthread_sigmask(SIG_SETMASK, &std::launder(reinterpret_cast<Signals*>(before_))->set, nullptr);
 }
 
-UnfinishedFile::UnfinishedFile() : place_(UnfinishedFiles::take()) {}
+UnfinishedFile::UnfinishedFile() : entry_(UnfinishedFiles::take()) {}
 
 UnfinishedFile::~UnfinishedFile() {
-    assert(!place_->exists);
-    place_->taken = false;
+    assert(!entry_->exists);
+    entry_->taken = false;
 }
 
 void UnfinishedFile::add(const NameSection&, int folder, const std::string& name) {
     assert(name.size() <= NAME_MAX);
-    place_->folder = folder;
-    std::memcpy(place_->name, name.c_str(), name.size() + 1);
-    place_->exists = true;
+    entry_->folder = folder;
+    std::memcpy(entry_->name, name.c_str(), name.size() + 1);
+    entry_->exists = true;
 }
 
-void UnfinishedFile::remove(const NameSection&) { place_->exists = false; }
+void UnfinishedFile::remove(const NameSection&) { entry_->exists = false; }
 
 void UnfinishedFile::remove_all() noexcept {
     block_signals(nullptr);
@@ -100,8 +100,8 @@ void UnfinishedFile::remove_all() noexcept {
         wait_for_the_end();
     constexpr timespec kMoment{0, 100'000};
     while (UnfinishedFiles::sections != UnfinishedFiles::kClosed) nanosleep(&kMoment, nullptr);
-    for (UnfinishedFiles::Place* place = UnfinishedFiles::first; place != nullptr; place = place->next) {
-        if (place->exists) unlinkat(place->folder, place->name, 0);
+    for (UnfinishedFiles::Entry* entry = UnfinishedFiles::first; entry != nullptr; entry = entry->next) {
+        if (entry->exists) unlinkat(entry->folder, entry->name, 0);
     }
 }
 

@@ -19,27 +19,27 @@ constexpr std::size_t kMostOfPath = 32768;  // of Windows
 }  // namespace
 
 // An element of a list that only grows, as in unfinished_files_posix.cpp.
-struct UnfinishedFile::Place {
+struct UnfinishedFile::Entry {
     std::atomic<bool> taken{true};
     std::atomic<bool> exists{false};
     std::unique_ptr<wchar_t[]> path = std::make_unique<wchar_t[]>(kMostOfPath);
-    Place* next = nullptr;
+    Entry* next = nullptr;
 };
 
 struct UnfinishedFiles {
-    using Place = UnfinishedFile::Place;
+    using Entry = UnfinishedFile::Entry;
 
     // The number of sections that are running, and a bit that forbids new ones.
     static constexpr unsigned kClosed = 1u << 31;
     static inline std::atomic<unsigned> sections{0};
-    static inline std::atomic<Place*> first{nullptr};
+    static inline std::atomic<Entry*> first{nullptr};
 
-    static Place* take() {
-        for (Place* place = first; place != nullptr; place = place->next) {
+    static Entry* take() {
+        for (Entry* entry = first; entry != nullptr; entry = entry->next) {
             bool taken = false;
-            if (place->taken.compare_exchange_strong(taken, true)) return place;
+            if (entry->taken.compare_exchange_strong(taken, true)) return entry;
         }
-        auto* made = new Place;
+        auto* made = new Entry;
         made->next = first;
         while (!first.compare_exchange_weak(made->next, made)) {
         }
@@ -55,28 +55,28 @@ NameSection::NameSection() {
 
 NameSection::~NameSection() { UnfinishedFiles::sections.fetch_sub(1); }
 
-UnfinishedFile::UnfinishedFile() : place_(UnfinishedFiles::take()) {}
+UnfinishedFile::UnfinishedFile() : entry_(UnfinishedFiles::take()) {}
 
 UnfinishedFile::~UnfinishedFile() {
-    assert(!place_->exists);
-    place_->taken = false;
+    assert(!entry_->exists);
+    entry_->taken = false;
 }
 
 // `folder` is not used: `name` is a whole path.
 void UnfinishedFile::add(const NameSection&, int, const std::string& name) {
     const std::wstring path = system_path(name);
     if (path.empty() || path.size() >= kMostOfPath) return;
-    std::memcpy(place_->path.get(), path.c_str(), (path.size() + 1) * sizeof(wchar_t));
-    place_->exists = true;
+    std::memcpy(entry_->path.get(), path.c_str(), (path.size() + 1) * sizeof(wchar_t));
+    entry_->exists = true;
 }
 
-void UnfinishedFile::remove(const NameSection&) { place_->exists = false; }
+void UnfinishedFile::remove(const NameSection&) { entry_->exists = false; }
 
 void UnfinishedFile::remove_all() noexcept {
     if ((UnfinishedFiles::sections.fetch_or(UnfinishedFiles::kClosed) & UnfinishedFiles::kClosed) != 0) Sleep(INFINITE);
     while (UnfinishedFiles::sections != UnfinishedFiles::kClosed) Sleep(1);
-    for (UnfinishedFiles::Place* place = UnfinishedFiles::first; place != nullptr; place = place->next) {
-        if (place->exists) DeleteFileW(place->path.get());
+    for (UnfinishedFiles::Entry* entry = UnfinishedFiles::first; entry != nullptr; entry = entry->next) {
+        if (entry->exists) DeleteFileW(entry->path.get());
     }
 }
 

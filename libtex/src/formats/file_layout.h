@@ -35,13 +35,13 @@ enum class Rearrange {
 };
 
 struct FileLayout {
-    struct Place {
+    struct Level {
         std::size_t offset = 0;  // from the start of the file
         std::size_t bytes = 0;
     };
     std::vector<std::byte> head;  // the file's first bytes
     Rearrange rearrange = Rearrange::none;
-    std::vector<Place> levels;  // [0] is the base level; all bytes between head and levels are 0
+    std::vector<Level> levels;  // [0] is the base level; all bytes between head and levels are 0
     std::size_t size = 0;       // of the whole file
 };
 

@@ -9,8 +9,8 @@
 
 #include "blocks/extent.h"
 #include "formats/channels.h"
-#include "formats/claims.h"
 #include "formats/ktx2/level_inflater.h"
+#include "formats/size_limits.h"
 #include "kernels/decode.h"
 #include "rows/decode_rows.h"
 
@@ -48,7 +48,7 @@ public:
     void store(const std::byte* rows, int first, int end, Image& image) const override;
 
 private:
-    void open_inflater(const StoredTexture::Place& place);
+    void open_inflater(const StoredTexture::Level& place);
     // Reads rows of blocks or of texels from the file.
     [[nodiscard]] Result<void> fetch(int first, int count, std::byte* out) {
         const std::size_t pitch = stored_pitch(*texture_, extent().width);
@@ -85,7 +85,7 @@ private:
     std::vector<bool> wanted_ = std::vector<bool>(4, true);
 };
 
-void LevelRows::open_inflater(const StoredTexture::Place& place) {
+void LevelRows::open_inflater(const StoredTexture::Level& place) {
     inflater_ = LevelInflater::make(texture_->supercompression, fetch_from(file_), place, place.inflated);
 }
 

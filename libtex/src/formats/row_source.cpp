@@ -8,11 +8,11 @@
 #include <tex/pack.h>
 
 #include "blocks/extent.h"
-#include "formats/claims.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/file_values.h"
 #include "formats/normal_mark.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
@@ -52,7 +52,7 @@ Result<Image> RowSource::read_all() {
 }
 
 Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows) {
-    return guarded([&]() -> Result<Image> {
+    return no_throw([&]() -> Result<Image> {
         if (!rows) return rows.error();
         return (*rows)->read_all();
     });
@@ -73,21 +73,21 @@ Result<void> RowSource::visit(const std::string& name, const TakeRows& take) {
 }
 
 Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions& options) {
-    const Codec& codec = codec_for(file, options);
-    if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
-    if (codec.open_rows == nullptr) {
+    const FileType& type = file_type_for(file, options);
+    if (const Result<void> fits = check_layer(type, options); !fits) return fits.error().of(file.path());
+    if (type.open_rows == nullptr) {
         Result<TextureRows> texture = open_texture_rows(file, options);
         if (!texture) return texture.error();
         return with_values(std::move(texture->levels.front()), options.values);
     }
-    Result<std::unique_ptr<RowSource>> rows = codec.open_rows(file, options);
+    Result<std::unique_ptr<RowSource>> rows = type.open_rows(file, options);
     if (!rows) return rows.error().of(file.path());
     return with_values(std::move(*rows), options.values);
 }
 
 Result<Image> read_image(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<Image> {
-        if (codec_for(file, options).parse != nullptr && options.values != FileValues::stored) {
+    return no_throw([&]() -> Result<Image> {
+        if (file_type_for(file, options).parse != nullptr && options.values != FileValues::stored) {
             const Result<Texture> texture = read_texture(file, options);
             if (!texture) return texture.error();
             return decode(*texture, 0);

@@ -60,7 +60,7 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
     const StoredTexture& stored = *parsed;
     Texture texture = stored.head;
     const int block = format_info(texture.format).block.height;
-    for (const StoredTexture::Place& place : stored.levels) {
+    for (const StoredTexture::Level& place : stored.levels) {
         Level level{place.extent, std::vector<std::byte>(level_bytes(texture.format, place.extent))};
         const int width = place.extent.width;
         const int rows = blocks_across(place.extent.height, block);

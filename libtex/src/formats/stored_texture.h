@@ -26,7 +26,7 @@ using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t of
 enum class Supercompression { none, zstd, zlib };
 
 struct StoredTexture {
-    struct Place {
+    struct Level {
         Extent extent;
         std::uint64_t offset = 0;
         std::uint64_t bytes = 0;  // in the file
@@ -35,7 +35,7 @@ struct StoredTexture {
         std::uint64_t skipped = 0;
     };
     Texture head;                       // without levels
-    std::vector<Place> levels;          // all of their bytes are within the file
+    std::vector<Level> levels;          // all of their bytes are within the file
     std::optional<FieldLayout> fields;  // of the file's texels; none: they are in head.format,
     bool bgr = false;                   // except that red and blue may be exchanged
     bool upwards = false;               // the bottom row comes first; never with blocks

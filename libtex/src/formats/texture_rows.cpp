@@ -7,11 +7,11 @@
 
 #include <tex/file.h>
 
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/level_rows.h"
 #include "formats/normal_mark.h"
 #include "formats/picture.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -36,20 +36,20 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
 }
 
 // Refuses a file that is too large to be read. What its header claims says more than its size in bytes.
-Result<void> check_size(InputFile& file, const Codec& codec, const ReadOptions& options) {
+Result<void> check_size(InputFile& file, const FileType& type, const ReadOptions& options) {
     if (!file.size() || *file.size() <= largest_file(options)) return {};
     const auto size = static_cast<std::size_t>(*file.size());
-    const Result<StoredTexture> claimed = codec.parse(fetch_from(file), size, file.path(), options);
+    const Result<StoredTexture> claimed = type.parse(fetch_from(file), size, file.path(), options);
     if (!claimed) return claimed.error();
     return file.read_rest(largest_file(options)).error();
 }
 
 // The levels of a file that stores their texels unchanged.
-Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadOptions& options) {
+Result<TextureRows> stored_rows(InputFile& file, const FileType& type, const ReadOptions& options) {
     if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-    if (const Result<void> fits = check_size(file, codec, options); !fits) return fits.error();
+    if (const Result<void> fits = check_size(file, type, options); !fits) return fits.error();
     Result<StoredTexture> parsed =
-        codec.parse(fetch_from(file), static_cast<std::size_t>(*file.size()), file.path(), options);
+        type.parse(fetch_from(file), static_cast<std::size_t>(*file.size()), file.path(), options);
     if (!parsed) return parsed.error();
     const auto stored = std::make_shared<const StoredTexture>(std::move(*parsed));
     TextureRows texture;
@@ -59,25 +59,25 @@ Result<TextureRows> stored_rows(InputFile& file, const Codec& codec, const ReadO
     return texture;
 }
 
-Result<TextureRows> open_any(InputFile& file, const Codec& codec, const ReadOptions& options) {
-    if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
-    if (codec.parse != nullptr) return stored_rows(file, codec, options);
-    if (codec.open_levels != nullptr) {
-        Result<TextureRows> texture = codec.open_levels(file, options);
+Result<TextureRows> open_any(InputFile& file, const FileType& type, const ReadOptions& options) {
+    if (const Result<void> fits = check_layer(type, options); !fits) return fits.error().of(file.path());
+    if (type.parse != nullptr) return stored_rows(file, type, options);
+    if (type.open_levels != nullptr) {
+        Result<TextureRows> texture = type.open_levels(file, options);
         if (!texture) return texture.error().of(file.path());
         return texture;
     }
-    if (codec.reader_name != nullptr) {  // so that the file can be read a second time
+    if (type.reader_name != nullptr) {  // so that the file can be read a second time
         const Result<void> settled = file.settle(std::min(largest_file(options), options.reader_memory));
         if (!settled) return settled.error();
     }
-    return picture_rows(file, codec.open_rows(file, options));
+    return picture_rows(file, type.open_rows(file, options));
 }
 
 }  // namespace
 
 Result<Texture> read_all(Result<TextureRows> rows) {
-    return guarded([&]() -> Result<Texture> {
+    return no_throw([&]() -> Result<Texture> {
         if (!rows) return rows.error();
         Texture texture = std::move(rows->head);
         for (const std::unique_ptr<RowSource>& rows_of : rows->levels) {
@@ -96,28 +96,28 @@ Result<Texture> read_all(Result<TextureRows> rows) {
 }
 
 Result<Texture> read_texture(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<Texture> {
-        const Codec& codec = codec_for(file, options);
-        if (const Result<void> fits = check_layer(codec, options); !fits) return fits.error().of(file.path());
-        if (codec.parse != nullptr) {
-            if (const Result<void> fits = check_size(file, codec, options); !fits) return fits.error();
+    return no_throw([&]() -> Result<Texture> {
+        const FileType& type = file_type_for(file, options);
+        if (const Result<void> fits = check_layer(type, options); !fits) return fits.error().of(file.path());
+        if (type.parse != nullptr) {
+            if (const Result<void> fits = check_size(file, type, options); !fits) return fits.error();
             const Result<std::vector<std::byte>> bytes = file.read_rest(largest_file(options));
             if (!bytes) return bytes.error();
-            return load_texture(codec.parse, bytes->data(), bytes->size(), file.path(), options);
+            return load_texture(type.parse, bytes->data(), bytes->size(), file.path(), options);
         }
-        if (codec.open_levels != nullptr) {
-            Result<Texture> texture = read_all(codec.open_levels(file, options));
+        if (type.open_levels != nullptr) {
+            Result<Texture> texture = read_all(type.open_levels(file, options));
             if (!texture) return texture.error().of(file.path());
             return texture;
         }
-        Result<Texture> texture = read_all(picture_rows(file, codec.open_rows(file, options)));
+        Result<Texture> texture = read_all(picture_rows(file, type.open_rows(file, options)));
         if (!texture) return texture.error().of(file.path());
         return texture;
     });
 }
 
 Result<TextureRows> open_texture_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<TextureRows> { return open_any(file, codec_for(file, options), options); });
+    return no_throw([&]() -> Result<TextureRows> { return open_any(file, file_type_for(file, options), options); });
 }
 
 }  // namespace tex::inline v1

@@ -7,11 +7,11 @@
 #include <array>
 #include <cstdint>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 
 namespace tex::inline v1 {
 
-// The shape (blocks/half_block.h) of a half that may be copied.
+// The shape (blocks/block_half.h) of a half that may be copied.
 struct CopyHalf {
     HalfShape shape;
     float sum;      // of the weights

@@ -73,7 +73,7 @@ Result<DracoTriangles> DracoTriangles::decode(JsonValue root, GltfBuffers& buffe
     Answer& answer = *triangles.answer_;
     answer.bytes = std::move(*decoded);
     answer.nothing = [](const std::string&) -> Result<std::vector<std::byte>> {
-        return bad_gltf("the mesh reader handed over nonsense");
+        return bad_gltf("the mesh reader returned invalid data");
     };
     const auto chunks = gltf_chunks(answer.bytes);
     if (!chunks) return chunks.error();

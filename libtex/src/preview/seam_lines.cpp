@@ -67,7 +67,7 @@ SeamLines seam_lines(const MeshBody& mesh, const PreviewScene& scene, const Prev
     result.scale.title = "seams: mean " + number(evidence.mean) + ", p99 " + number(evidence.p99) + " degrees";
     result.scale.greatest = options.maximum > 0.0f ? static_cast<double>(options.maximum) : round_angle(evidence.p99);
 
-    const auto& places = samples.places();
+    const auto& places = samples.samples();
     for (std::size_t first = 0; first < places.size();) {
         std::size_t end = first + 1;
         while (end < places.size() && places[end].edge == places[first].edge) ++end;

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "rays/box_cuts.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -190,7 +190,7 @@ std::uint32_t TreeBuilder::add_group(const BoxRange& range, std::vector<Triangle
     std::fill_n(group.triangle, kGroupTriangles, kNoHit);
     for (std::size_t k = 0; k < range.count(); ++k) {
         const std::uint32_t triangle = boxed_[range.begin + k].triangle;
-        const Triangles::Place place = triangles_.at(triangle);
+        const Triangles::Triangle place = triangles_.at(triangle);
         for (std::size_t c = 0; c < 3; ++c) {
             const Float3& p = place.part.positions[place.vertex(c)];
             group.at[c][0][k] = p.x;
@@ -260,7 +260,7 @@ Result<void> TreeBuilder::run(const Execution& execution, ProgressSpan span) {
 }
 
 Result<BoxTree> BoxTree::build(const Triangles& triangles, const Execution& execution, ProgressSpan span) {
-    return guarded([&]() -> Result<BoxTree> {
+    return no_throw([&]() -> Result<BoxTree> {
         BoxTree tree;
         if (const auto built = TreeBuilder(triangles, tree).run(execution, span); !built) return built.error();
         return tree;

@@ -53,7 +53,7 @@ void see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, 
         const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
         const double known = std::min(sides.front.value(), sides.back.value());
         if (near != kNoHit &&
-            nearest_on_triangle(p, Triangles::Place{low.part, near}.corners()).squared <= known * known)
+            nearest_on_triangle(p, Triangles::Triangle{low.part, near}.corners()).squared <= known * known)
             continue;
         near = low.tree.any_within(p, known * known);
         if (near != kNoHit) continue;
@@ -71,7 +71,7 @@ void see_triangle(const MeshPart& low, std::size_t triangle, const RayDirections
     constexpr double kThird = 1.0 / 3.0;
     constexpr std::array<double, 3> kPlaces[] = {
         {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {kThird, kThird, kThird}};
-    const auto corners = Triangles::Place{low, triangle}.corners();
+    const auto corners = Triangles::Triangle{low, triangle}.corners();
     Ray rays[8];
     for (std::size_t k = 0; k < 4; ++k) {
         const Vector3 p = mix(corners, kPlaces[k]), d = directions.at(triangle, kPlaces[k], p);

@@ -12,7 +12,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// A place of a picture that repeats: two columns, two rows, and the parts of the second ones.
+// A triangle of a picture that repeats: two columns, two rows, and the parts of the second ones.
 struct Sampled {
     int i[2], j[2];
     double right, down;
@@ -30,23 +30,23 @@ struct Sampled {
 
 private:
     static double around(double x, int size, int* places) {
-        double place = (x - 0.5) / size;
-        place = (place - std::floor(place)) * size;
-        const double first = std::min(std::floor(place), size - 1.0);
+        double triangle = (x - 0.5) / size;
+        triangle = (triangle - std::floor(triangle)) * size;
+        const double first = std::min(std::floor(triangle), size - 1.0);
         places[0] = static_cast<int>(first);
         places[1] = (places[0] + 1) % size;
-        return place - first;
+        return triangle - first;
     }
 };
 
-Sampled sampled(const Triangles::Place& place, const HighSurface::Weights& weights, int uv_set, Extent extent) {
+Sampled sampled(const Triangles::Triangle& triangle, const HighSurface::Weights& weights, int uv_set, Extent extent) {
     double u = 0.0, v = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Float2 uv = place.part.uvs[static_cast<std::size_t>(uv_set)][place.vertex(k)];
+        const Float2 uv = triangle.part.uvs[static_cast<std::size_t>(uv_set)][triangle.vertex(k)];
         u += weights[k] * static_cast<double>(uv.x);
         v += weights[k] * static_cast<double>(uv.y);
     }
-    if (place.part.v_axis == YAxis::up) v = 1.0 - v;
+    if (triangle.part.v_axis == YAxis::up) v = 1.0 - v;
     return {extent, u * extent.width, v * extent.height};
 }
 
@@ -71,34 +71,34 @@ HighSurface::HighSurface(const std::vector<MeshPart>& high, const TransferInputs
     has_colors_ = std::any_of(inputs.high_details.begin(), inputs.high_details.end(), has_color);
 }
 
-Vector3 HighSurface::face_normal(const Triangles::Place& place) {
-    const auto corners = place.corners();
+Vector3 HighSurface::face_normal(const Triangles::Triangle& triangle) {
+    const auto corners = triangle.corners();
     return normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
 }
 
-Vector3 HighSurface::normal_at(const Triangles::Place& place, const Weights& weights) const {
-    const HighDetail* const detail = detail_of(place);
+Vector3 HighSurface::normal_at(const Triangles::Triangle& triangle, const Weights& weights) const {
+    const HighDetail* const detail = detail_of(triangle);
     if (detail != nullptr && detail->normals != nullptr) {
         const NormalMap& map = *detail->normals;
-        const Sampled at = sampled(place, weights, detail->uv_set, map.extent());
+        const Sampled at = sampled(triangle, weights, detail->uv_set, map.extent());
         const Vector3 t = read_texel(detail->decoder, {at.of(map.x), at.of(map.y), at.of(map.z)});
-        const CornerFrames frames({place.part, *detail->tangents, detail->uv_set, detail->decoder}, place.number);
+        const CornerFrames frames({triangle.part, *detail->tangents, detail->uv_set, detail->decoder}, triangle.number);
         return decode(frames.at(weights), t);
     }
-    if (!place.part.normals.empty()) {
+    if (!triangle.part.normals.empty()) {
         Vector3 sum;
         for (std::size_t k = 0; k < 3; ++k)
-            sum = sum + weights[k] * normalized(vector_of(place.part.normals[place.vertex(k)]));
+            sum = sum + weights[k] * normalized(vector_of(triangle.part.normals[triangle.vertex(k)]));
         if (dot(sum, sum) > 1e-12) return normalized(sum);
     }
-    return face_normal(place);
+    return face_normal(triangle);
 }
 
-Vector3 HighSurface::color_at(const Triangles::Place& place, const Weights& weights) const {
-    const HighDetail* const detail = detail_of(place);
+Vector3 HighSurface::color_at(const Triangles::Triangle& triangle, const Weights& weights) const {
+    const HighDetail* const detail = detail_of(triangle);
     if (detail == nullptr || detail->color == nullptr) return {1.0, 1.0, 1.0};
     const std::vector<Plane<float>>& planes = detail->color->planes;
-    const Sampled at = sampled(place, weights, detail->uv_set, planes.front().extent());
+    const Sampled at = sampled(triangle, weights, detail->uv_set, planes.front().extent());
     if (planes.size() < 3) {
         const double grey = at.of(planes.front());
         return {grey, grey, grey};
@@ -106,10 +106,10 @@ Vector3 HighSurface::color_at(const Triangles::Place& place, const Weights& weig
     return {at.of(planes[0]), at.of(planes[1]), at.of(planes[2])};
 }
 
-Vector3 HighSurface::vertex_color_at(const Triangles::Place& place, const Weights& weights) {
-    if (place.part.colors.empty()) return {1.0, 1.0, 1.0};
+Vector3 HighSurface::vertex_color_at(const Triangles::Triangle& triangle, const Weights& weights) {
+    if (triangle.part.colors.empty()) return {1.0, 1.0, 1.0};
     Vector3 sum;
-    for (std::size_t k = 0; k < 3; ++k) sum = sum + weights[k] * vector_of(place.part.colors[place.vertex(k)]);
+    for (std::size_t k = 0; k < 3; ++k) sum = sum + weights[k] * vector_of(triangle.part.colors[triangle.vertex(k)]);
     return sum;
 }
 

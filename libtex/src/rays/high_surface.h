@@ -20,30 +20,32 @@ public:
 
     using Weights = std::array<double, 3>;
 
-    // The normal at the place: see mesh.h. Of unit length.
-    [[nodiscard]] Vector3 normal_at(const Triangles::Place& place, const Weights& weights) const;
+    // The normal at the triangle: see mesh.h. Of unit length.
+    [[nodiscard]] Vector3 normal_at(const Triangles::Triangle& triangle, const Weights& weights) const;
     // Whether it is mixed from the normals of the corners alone.
-    [[nodiscard]] bool mixes_normals(const Triangles::Place& place) const {
-        const HighDetail* const detail = detail_of(place);
-        return (detail == nullptr || detail->normals == nullptr) && !place.part.normals.empty();
+    [[nodiscard]] bool mixes_normals(const Triangles::Triangle& triangle) const {
+        const HighDetail* const detail = detail_of(triangle);
+        return (detail == nullptr || detail->normals == nullptr) && !triangle.part.normals.empty();
     }
-    [[nodiscard]] static Vector3 face_normal(const Triangles::Place& place);
+    [[nodiscard]] static Vector3 face_normal(const Triangles::Triangle& triangle);
 
     [[nodiscard]] bool has_colors() const { return has_colors_; }
-    [[nodiscard]] Vector3 color_at(const Triangles::Place& place, const Weights& weights) const;
+    [[nodiscard]] Vector3 color_at(const Triangles::Triangle& triangle, const Weights& weights) const;
 
     // The colour of the vertices; white if the part has none.
-    [[nodiscard]] static Vector3 vertex_color_at(const Triangles::Place& place, const Weights& weights);
+    [[nodiscard]] static Vector3 vertex_color_at(const Triangles::Triangle& triangle, const Weights& weights);
 
     [[nodiscard]] bool has_ids() const { return !inputs_.high_ids.empty(); }
-    [[nodiscard]] std::int32_t id_of(const Triangles::Place& place) const { return inputs_.high_ids[index_of(place)]; }
+    [[nodiscard]] std::int32_t id_of(const Triangles::Triangle& triangle) const {
+        return inputs_.high_ids[index_of(triangle)];
+    }
 
 private:
-    [[nodiscard]] std::size_t index_of(const Triangles::Place& place) const {
-        return static_cast<std::size_t>(&place.part - high_.data());
+    [[nodiscard]] std::size_t index_of(const Triangles::Triangle& triangle) const {
+        return static_cast<std::size_t>(&triangle.part - high_.data());
     }
-    [[nodiscard]] const HighDetail* detail_of(const Triangles::Place& place) const {
-        return inputs_.high_details.empty() ? nullptr : &inputs_.high_details[index_of(place)];
+    [[nodiscard]] const HighDetail* detail_of(const Triangles::Triangle& triangle) const {
+        return inputs_.high_details.empty() ? nullptr : &inputs_.high_details[index_of(triangle)];
     }
 
     const std::vector<MeshPart>& high_;

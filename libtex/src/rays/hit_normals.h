@@ -17,18 +17,18 @@ public:
 
     void clear() { places_.clear(); }
     // Precondition: there are fewer than kMost.
-    void add(const HighSurface& surface, const Triangles::Place& place, const HighSurface::Weights& weights);
+    void add(const HighSurface& surface, const Triangles::Triangle& triangle, const HighSurface::Weights& weights);
     // Finds what HighSurface::normal_at() finds.
     void find(const HighSurface& surface);
 
     // Of the k-th hit that was added.
-    [[nodiscard]] const Triangles::Place& place(std::size_t k) const { return places_[k]; }
+    [[nodiscard]] const Triangles::Triangle& triangle(std::size_t k) const { return places_[k]; }
     [[nodiscard]] Vector3 at(std::size_t k) const { return {normals_.x[k], normals_.y[k], normals_.z[k]}; }
 
 private:
-    std::vector<Triangles::Place> places_;
+    std::vector<Triangles::Triangle> places_;
     VectorBlock<kMost> weights_, normals_;
-    float corners_[9][kMost + kMoreVectors] = {};  // normals: corner and axis, place
+    float corners_[9][kMost + kMoreVectors] = {};  // normals: corner and axis, triangle
 };
 
 }  // namespace tex::inline v1

@@ -18,7 +18,7 @@ class LowTriangle {
 public:
     LowTriangle() = default;
     LowTriangle(const TangentSpace& space, std::size_t number, Extent extent)
-        : frames_(space, number), corners_(Triangles::Place{space.part, number}.corners()) {
+        : frames_(space, number), corners_(Triangles::Triangle{space.part, number}.corners()) {
         double x[3], y[3];
         for (std::size_t k = 0; k < 3; ++k) {
             const Float2 uv =
@@ -44,7 +44,7 @@ public:
 
     [[nodiscard]] const CornerFrames& frames() const { return frames_; }
 
-    // The weights so many texels from the place with these weights, or these if that is far beyond the triangle.
+    // The weights so many texels from the triangle with these weights, or these if that is far beyond the triangle.
     [[nodiscard]] std::array<double, 3> moved(const std::array<double, 3>& weights, double x, double y) const {
         std::array<double, 3> there{};
         for (std::size_t k = 0; k < 3; ++k) there[k] = weights[k] + x * along_x_[k] + y * along_y_[k];

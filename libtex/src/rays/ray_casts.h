@@ -50,7 +50,7 @@ public:
     [[nodiscard]] RayEnd cast_line(const RayStart& start) const;
 
     // The triangle of a hit, and the place of the hit on it.
-    [[nodiscard]] Triangles::Place place_of(const RayEnd& end) const { return triangles_.at(end.triangle); }
+    [[nodiscard]] Triangles::Triangle place_of(const RayEnd& end) const { return triangles_.at(end.triangle); }
     [[nodiscard]] Vector3 point_of(const RayEnd& end) const { return mix(place_of(end).corners(), end.weights); }
 
 private:

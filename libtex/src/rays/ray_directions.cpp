@@ -10,7 +10,7 @@
 
 #include "mesh/disjoint_sets.h"
 #include "rows/math.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> numbered_positions(const MeshPart& part) {
 }
 
 std::array<Vector3, 3> corners_of(const MeshPart& part, std::size_t triangle) {
-    return Triangles::Place{part, triangle}.corners();
+    return Triangles::Triangle{part, triangle}.corners();
 }
 
 Vector3 face_normal(const std::array<Vector3, 3>& corners) {
@@ -154,7 +154,7 @@ void RayDirections::set_straight(const std::vector<std::uint32_t>& position, dou
 
 Result<RayDirections> RayDirections::make(const MeshPart& part, RayMode mode, double width, double angle,
                                           const Execution& execution) {
-    return guarded([&]() -> Result<RayDirections> {
+    return no_throw([&]() -> Result<RayDirections> {
         RayDirections directions;
         directions.part_ = &part;
         directions.width_ = width;

@@ -46,7 +46,7 @@ Result<void> check_picture(const Plane<float>* picture, float most, const std::s
 RayStart RayStarts::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
                        double y) const {
     if (inputs_.cage != nullptr) {
-        const Vector3 way = mix(Triangles::Place{*inputs_.cage, triangle}.corners(), weights) - point;
+        const Vector3 way = mix(Triangles::Triangle{*inputs_.cage, triangle}.corners(), weights) - point;
         const double length = std::sqrt(dot(way, way));
         if (length > 1e-30) return {point, (1.0 / length) * way, length + slack_};
     }

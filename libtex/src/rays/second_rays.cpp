@@ -29,7 +29,7 @@ SecondRays::SecondRays(const BoxTree& tree, const TransferOptions& options, doub
     lift_ = kLift * largest_coordinate(tree);
 }
 
-void SecondRays::start(const HitPlace& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const {
+void SecondRays::start(const HitPoint& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const {
     const auto count = static_cast<std::size_t>(hemisphere_.count());
     scratch.directions.resize(count);
     scratch.rays.resize(count);
@@ -41,7 +41,7 @@ void SecondRays::start(const HitPlace& place, double side, std::uint32_t seed, F
     }
 }
 
-void SecondRays::add_openness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+void SecondRays::add_openness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, 1.0, seed, Facing::both, scratch);
     scratch.blocked.resize(scratch.rays.size());
     find_blocked(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.blocked.data());
@@ -57,7 +57,7 @@ void SecondRays::add_openness(const HitPlace& place, std::uint32_t seed, Scratch
     sums.rays += hemisphere_.count();
 }
 
-void SecondRays::add_thickness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+void SecondRays::add_thickness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, -1.0, seed ^ kInwards, Facing::both, scratch);
     scratch.hits.assign(scratch.rays.size(), {});
     trace_rays(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data());
@@ -75,7 +75,7 @@ void SecondRays::add_thickness(const HitPlace& place, std::uint32_t seed, Scratc
     ++sums.thick;
 }
 
-void SecondRays::add(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
+void SecondRays::add(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     if (looks_out_) add_openness(place, seed, scratch, sums);
     if (looks_in_) add_thickness(place, seed, scratch, sums);
 }

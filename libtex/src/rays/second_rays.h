@@ -14,7 +14,7 @@
 namespace tex::inline v1 {
 
 // A place on the high mesh. Both normals have unit length and point to the side from which second rays start.
-struct HitPlace {
+struct HitPoint {
     Vector3 point;
     Vector3 normal, face;  // interpolated; of the triangle
 };
@@ -40,12 +40,12 @@ public:
     };
 
     // Casts the rays of one place.
-    void add(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
+    void add(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
 
 private:
-    void start(const HitPlace& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const;
-    void add_openness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
-    void add_thickness(const HitPlace& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
+    void start(const HitPoint& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const;
+    void add_openness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
+    void add_thickness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
 
     const BoxTree& tree_;
     Hemisphere hemisphere_;

@@ -14,7 +14,7 @@ constexpr double kMostMissed = 0.95;
 }  // namespace
 
 const LowTriangle& TransferStrips::triangle_of(Strip& strip, std::int32_t number) const {
-    Kept& kept = strip.kept[static_cast<std::size_t>(number) % kKept];
+    CachedTriangle& kept = strip.kept[static_cast<std::size_t>(number) % kCachedTriangles];
     if (number != kept.number) {
         kept.number = number;
         kept.triangle = LowTriangle(scene_.low, static_cast<std::size_t>(number), result_.map.extent());

@@ -96,11 +96,11 @@ private:
         std::vector<float> needs;
     };
     // Triangles of the low mesh that were used last: a row comes back to them in the next one.
-    struct Kept {
+    struct CachedTriangle {
         std::int32_t number = kNoTriangle;
         LowTriangle triangle;
     };
-    static constexpr std::size_t kKept = 256;
+    static constexpr std::size_t kCachedTriangles = 256;
     // The samples of a texel that hit.
     struct Hits {
         int count = 0;
@@ -130,7 +130,7 @@ private:
         std::size_t next_hit = 0;  // in `normals`
         Texels texels;
         More more;  // of the texel
-        std::vector<Kept> kept = std::vector<Kept>(kKept);
+        std::vector<CachedTriangle> kept = std::vector<CachedTriangle>(kCachedTriangles);
     };
 
     const LowTriangle& triangle_of(Strip& strip, std::int32_t number) const;

@@ -81,12 +81,12 @@ void TransferStrips::see_more(Strip& strip, int i, int j, std::size_t begin, std
         const RayEnd& ray = strip.ends[k];
         if (ray.triangle == kNoHit) continue;
         const RayStart& from = strip.starts[k];
-        const Triangles::Place& place = strip.normals.place(hit);
+        const Triangles::Triangle& hit_triangle = strip.normals.triangle(hit);
         more.position = more.position + from.point + ray.height * from.direction;
-        if (scene_.surface.has_colors()) more.color = more.color + scene_.surface.color_at(place, ray.weights);
+        if (scene_.surface.has_colors()) more.color = more.color + scene_.surface.color_at(hit_triangle, ray.weights);
         if (!result_.vertex_color.planes.empty())
-            more.vertex_color = more.vertex_color + HighSurface::vertex_color_at(place, ray.weights);
-        if (scene_.surface.has_ids()) more.ids.push_back(scene_.surface.id_of(place));
+            more.vertex_color = more.vertex_color + HighSurface::vertex_color_at(hit_triangle, ray.weights);
+        if (scene_.surface.has_ids()) more.ids.push_back(scene_.surface.id_of(hit_triangle));
         if (scene_.second != nullptr) see_second(strip, i, j, k, hit);
         ++hit;
     }
@@ -94,15 +94,15 @@ void TransferStrips::see_more(Strip& strip, int i, int j, std::size_t begin, std
 }
 
 void TransferStrips::see_second(Strip& strip, int i, int j, std::size_t k, std::size_t hit) const {
-    const Triangles::Place& at = strip.normals.place(hit);
-    HitPlace place{mix(at.corners(), strip.ends[k].weights), strip.normals.at(hit), HighSurface::face_normal(at)};
-    if (scene_.backfaces && dot(place.face, strip.starts[k].direction) < 0.0) {
-        place.face = -1.0 * place.face;
-        place.normal = -1.0 * place.normal;
+    const Triangles::Triangle& at = strip.normals.triangle(hit);
+    HitPoint point{mix(at.corners(), strip.ends[k].weights), strip.normals.at(hit), HighSurface::face_normal(at)};
+    if (scene_.backfaces && dot(point.face, strip.starts[k].direction) < 0.0) {
+        point.face = -1.0 * point.face;
+        point.normal = -1.0 * point.normal;
     }
-    if (!(dot(place.normal, place.face) > 0.0)) place.normal = place.face;
+    if (!(dot(point.normal, point.face) > 0.0)) point.normal = point.face;
     const std::uint32_t seed = Hemisphere::seed_of(i, j, static_cast<std::uint32_t>(strip.samples[k].place));
-    scene_.second->add(place, seed, strip.scratch, strip.more.second);
+    scene_.second->add(point, seed, strip.scratch, strip.more.second);
 }
 
 // `part` is what each hit of the texel counts.

@@ -28,7 +28,7 @@ public:
     [[nodiscard]] std::size_t count() const { return first_.back(); }
 
     // A triangle of a part, whose corners begin at part.indices[3 * number].
-    struct Place {
+    struct Triangle {
         const MeshPart& part;
         std::size_t number;
 
@@ -38,7 +38,7 @@ public:
                     vector_of(part.positions[vertex(2)])};
         }
     };
-    [[nodiscard]] Place at(std::size_t triangle) const {
+    [[nodiscard]] Triangle at(std::size_t triangle) const {
         const auto after = std::upper_bound(first_.begin(), first_.end(), triangle);
         const auto part = static_cast<std::size_t>(after - first_.begin()) - 1;
         return {*parts_[part], triangle - first_[part]};

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "kernels/angle_search.h"
 #include "kernels/chords.h"
 #include "rows/math.h"

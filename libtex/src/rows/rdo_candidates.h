@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 
 namespace tex::inline v1 {
 

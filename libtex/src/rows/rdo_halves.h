@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "kernels/copy_search.h"
 
 namespace tex::inline v1 {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "kernels/chords.h"
 #include "kernels/copy_search.h"
 #include "rows/rdo_candidates.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 #include "rows/rdo_astc_band.h"
 #include "rows/rdo_astc_pass.h"
 #include "rows/rdo_band.h"

@@ -50,7 +50,7 @@ Result<void> Blending::open_detail(Input& input, const LayerFile& layer, const L
     input.wrap_x = placed.wrap_x;
     input.wrap_y = placed.wrap_y;
     if (options_.shared) {
-        const MapPlace place{input.place, input.wrap_x, input.wrap_y};
+        const MapTransform place{input.place, input.wrap_x, input.wrap_y};
         auto held = options_.shared->get(layer.input, layer.source, place, execution);
         if (!held) return held.error();
         input.shared = std::move(*held);

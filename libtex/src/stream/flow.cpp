@@ -19,7 +19,7 @@
 
 #include "stream/flow_plan.h"
 #include "threads/fork_join.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -163,7 +163,7 @@ void FlowRun::do_task(int task, std::unique_lock<std::mutex>& lock) {
     if (wakes) changed_.notify_one();
     std::shared_ptr<Strip> strip;
     const int first = line.row_of(task);
-    const Result<void> done = guarded([&]() -> Result<void> {
+    const Result<void> done = no_throw([&]() -> Result<void> {
         if (flow_.only_counts_ && !stage.counts()) return {};
         strip = stage.pool_.take([&stage] { return stage.new_strip(stage.held_rows_); });
         strip->first = first;

@@ -10,7 +10,7 @@
 #include "rows/usable.h"
 #include "stream/height_stage.h"
 #include "stream/source_stage.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -200,7 +200,7 @@ const Stage& GivenOthers::add_to(Flow& flow, const Stage& normals) const {
 }
 
 Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding) {
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         if (auto usable = check_usable(map); !usable) return usable;
         for (const auto& [place, data] : kGivenPlaces) {
             if (inputs.*data && (inputs.*data)->heights)

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "blocks/extent.h"
-#include "formats/claims.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -38,7 +38,7 @@ Result<Image> last_rows(InputFile& file, std::unique_ptr<RowSource>& rows, const
     for (int j = rows->can_peek() ? first / together * together : 0; j < extent.height; j += together) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         const int end = std::min(j + together, extent.height);
-        const Result<void> done = guarded([&] {
+        const Result<void> done = no_throw([&] {
             return rows->can_peek() ? rows->peek(j, end - j, decoded.data()) : rows->decode(j, end - j, decoded.data());
         });
         if (!done) return done.error().of(file.path());

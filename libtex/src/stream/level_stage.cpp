@@ -92,9 +92,9 @@ private:
 };
 
 // Makes the material's own roughness at the base level, and its alpha^2, in step with the normals.
-class OwnRoughnessStage final : public Stage {
+class MaterialRoughnessStage final : public Stage {
 public:
-    OwnRoughnessStage(const Stage& normals, const OwnRoughness& own)
+    MaterialRoughnessStage(const Stage& normals, const MaterialRoughness& own)
         : Stage(normals.extent(), 2), normals_(normals), own_(own) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
@@ -105,7 +105,7 @@ public:
 
 private:
     const Stage& normals_;
-    const OwnRoughness& own_;
+    const MaterialRoughness& own_;
 };
 
 // Writes a level. Its rows are those of another stage, or made from them by `finish`, which takes row j to row k of the
@@ -219,9 +219,9 @@ void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targ
 }
 
 void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
-                   const OwnRoughness& own, Targets& targets) {
+                   const MaterialRoughness& own, Targets& targets) {
     constexpr int kOfAverages = 4, kAlpha2 = 3;
-    const Stage& base = flow.add<OwnRoughnessStage>(normals, own);
+    const Stage& base = flow.add<MaterialRoughnessStage>(normals, own);
     if (levels.first >= 0)
         flow.add<TargetStage>(base, Content::roughness, levels.first, 0, TargetStage::Finish(), targets, WatchRows());
     std::vector<StagePlane> larger = planes_of(normals, kAlpha2);

@@ -9,7 +9,7 @@
 #include <tex/mip.h>
 
 #include "stream/flow.h"
-#include "stream/own_roughness.h"
+#include "stream/material_roughness.h"
 #include "stream/targets.h"
 
 namespace tex::inline v1 {
@@ -32,6 +32,6 @@ void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targ
 
 // The same for roughness that the normals of a level call for.
 void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
-                   const OwnRoughness& own, Targets& targets);
+                   const MaterialRoughness& own, Targets& targets);
 
 }  // namespace tex::inline v1

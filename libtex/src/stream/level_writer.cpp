@@ -15,13 +15,13 @@
 
 #include <tex/types.h>
 
-#include "formats/codecs.h"
 #include "formats/file_layout.h"
+#include "formats/file_types.h"
 #include "formats/reader/reader.h"
 #include "rows/pack_rows.h"
 #include "rows/roughness_rows.h"
 #include "stream/texture_writer.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -32,9 +32,9 @@ public:
     PictureWriter(std::string path, std::unique_ptr<OutputFile> file, LevelPacking packing, int first)
         : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
 
-    Result<void> begin(const Codec& codec, const TextureHead& head) {
+    Result<void> begin(const FileType& type, const TextureHead& head) {
         Result<std::unique_ptr<RowTarget>> target =
-            codec.open_target(head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
+            type.open_target(head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
                 size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
                 return bytes.empty() ? Result<void>() : file_->write_at(offset, bytes);
             });
@@ -77,7 +77,7 @@ private:
 };
 
 Result<void> PictureWriter::write(const LevelRows& rows) {
-    const Result<void> done = guarded([&]() -> Result<void> {
+    const Result<void> done = no_throw([&]() -> Result<void> {
         rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
         packing_.pack(rows, rows.scratch.data(), nullptr);
         if (Result<void> put = put_in_order(rows.level - first_, rows); !put) return put;
@@ -119,7 +119,7 @@ Result<void> PictureWriter::work(std::size_t left) {
 }
 
 Result<void> PictureWriter::commit() {
-    const Result<void> ended = guarded([&] {
+    const Result<void> ended = no_throw([&] {
         Result<void> done = work(0);
         return done ? target_->finish() : done;
     });
@@ -134,7 +134,7 @@ public:
 
     [[nodiscard]] bool is_in_order() const override { return false; }
     Result<void> write(const LevelRows& rows) override {
-        const Result<void> done = guarded([&] {
+        const Result<void> done = no_throw([&] {
             rows.scratch.resize(level_bytes(packing_.head.format, {rows.map.extent().width, rows.height}));
             packing_.pack(rows, rows.scratch.data(), nullptr);
             return picture_.put(rows.first, rows.scratch);
@@ -142,7 +142,7 @@ public:
         return done ? done : Result<void>(done.error().of(path_));
     }
     Result<void> commit() override {
-        const Result<std::vector<std::byte>> bytes = guarded([&] { return picture_.encode(); });
+        const Result<std::vector<std::byte>> bytes = no_throw([&] { return picture_.encode(); });
         if (!bytes) return bytes.error().of(path_);
         size_ = bytes->size();
         const Result<void> written = file_->write_at(0, *bytes);
@@ -160,7 +160,7 @@ private:
 
 }  // namespace
 
-bool takes_any_order(Container container) { return codec_of(container).layout != nullptr; }
+bool takes_any_order(Container container) { return file_type_of(container).layout != nullptr; }
 
 LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
@@ -200,28 +200,28 @@ Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, 
                                                        const LevelPacking& packing, int first,
                                                        const WriteOptions& options, Opened when) {
     const TextureHead& head = packing.head;
-    const Codec& codec = codec_of(container);
+    const FileType& type = file_type_of(container);
     FileLayout layout;
-    if (codec.layout != nullptr || options.zstd != 0) {
-        if (const Result<void> held = check_holds(codec, head.format, options); !held) return held.error().of(path);
-        layout = codec.layout(head, options);
+    if (type.layout != nullptr || options.zstd != 0) {
+        if (const Result<void> held = check_holds(type, head.format, options); !held) return held.error().of(path);
+        layout = type.layout(head, options);
     }
-    const std::size_t bytes = codec.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
+    const std::size_t bytes = type.layout != nullptr ? layout.size : level_bytes(head.format, head.extent);
     Result<std::unique_ptr<OutputFile>> file = OutputFile::open(path, bytes, when, AtomicFileOptions::of(options));
     if (!file) return file.error();
-    if (codec.open_target != nullptr) {
+    if (type.open_target != nullptr) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
-        if (const Result<void> begun = picture->begin(codec, head); !begun) return begun.error();
+        if (const Result<void> begun = picture->begin(type, head); !begun) return begun.error();
         return std::unique_ptr<LevelWriter>(std::move(picture));
     }
-    if (codec.layout == nullptr) {
+    if (type.layout == nullptr) {
         Result<ReaderPicture> picture = ReaderPicture::open(container, head, options);
         if (!picture) return picture.error().of(path);
         return std::unique_ptr<LevelWriter>(
             std::make_unique<EncodedWriter>(path, std::move(*file), packing, std::move(*picture)));
     }
     auto texture = std::make_unique<TextureWriter>(std::move(*file), std::move(layout), packing, first);
-    const Result<void> begun = texture->begin(path, codec, options.zstd);
+    const Result<void> begun = texture->begin(path, type, options.zstd);
     if (!begun) return begun.error();
     return std::unique_ptr<LevelWriter>(std::move(texture));
 }

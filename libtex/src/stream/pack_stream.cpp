@@ -13,7 +13,7 @@
 #include "stream/given_others.h"
 #include "stream/level_stage.h"
 #include "stream/map_inspector.h"
-#include "stream/own_roughness.h"
+#include "stream/material_roughness.h"
 #include "stream/settled_map.h"
 #include "stream/targets.h"
 #include "threads/parallel.h"
@@ -66,7 +66,7 @@ private:
     const StreamSizes& sizes_;
     std::optional<MipOptions> mip_;
     Plane<float> roughness_map_;  // RoughnessFile::map
-    std::optional<OwnRoughness> own_;
+    std::optional<MaterialRoughness> own_;
     GivenOthers given_;
     OtherPlanes written_;    // what files of normals get beside them
     OtherPlanes kept_;       // what of the source goes along: into these files, or into its own
@@ -198,7 +198,7 @@ Result<void> PackRun::find_own_roughness() {
     Result<Plane<float>> map = file.map();
     if (!map) return map.error();
     roughness_map_ = std::move(*map);
-    Result<OwnRoughness> own = OwnRoughness::of(roughness_map_, extent(first_), *mip_, execution_.quiet());
+    Result<MaterialRoughness> own = MaterialRoughness::of(roughness_map_, extent(first_), *mip_, execution_.quiet());
     if (!own) return own.error();
     own_ = std::move(*own);
     return {};

@@ -96,7 +96,7 @@ Result<SharedMaps::Map> SharedMaps::read(Entry& entry, const Execution& executio
     return map;
 }
 
-Result<SharedMaps::Map> SharedMaps::with_levels(Entry& entry, const Map& plain, const MapPlace& place,
+Result<SharedMaps::Map> SharedMaps::with_levels(Entry& entry, const Map& plain, const MapTransform& place,
                                                 const Execution& execution) {
     for (const Leveled& built : entry.built) {
         if (built.wrap_x == place.wrap_x && built.wrap_y == place.wrap_y) return built.map;
@@ -127,7 +127,7 @@ Result<SharedMaps::Map> SharedMaps::with_levels(Entry& entry, const Map& plain, 
 }
 
 Result<std::shared_ptr<const HeldMap>> SharedMaps::get(const std::string& path, const SourceOptions& options,
-                                                       const MapPlace& place, const Execution& execution) {
+                                                       const MapTransform& place, const Execution& execution) {
     const std::optional<FileVersion> version = path == "-" ? std::nullopt : FileVersion::of(path);
     if (!version) return Map();
     const std::shared_ptr<Entry> entry = entry_of(path, options, *version);

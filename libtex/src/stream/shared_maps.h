@@ -25,7 +25,7 @@ struct HeldMap {
 };
 
 // Where a map lies on a result.
-struct MapPlace {
+struct MapTransform {
     UvMap map;
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
@@ -39,7 +39,7 @@ public:
     // is a stream: then the caller reads it. Waits while another thread reads the same map. May throw std::bad_alloc.
     // Errors: as read_normals().
     Result<std::shared_ptr<const HeldMap>> get(const std::string& path, const SourceOptions& options,
-                                               const MapPlace& place, const Execution& execution);
+                                               const MapTransform& place, const Execution& execution);
 
 private:
     using Map = std::shared_ptr<const HeldMap>;
@@ -62,7 +62,7 @@ private:
     bool make_room(std::int64_t bytes);
     bool keep(Entry& entry, std::int64_t bytes, const std::function<void()>& put);
     Result<Map> read(Entry& entry, const Execution& execution);
-    Result<Map> with_levels(Entry& entry, const Map& plain, const MapPlace& place, const Execution& execution);
+    Result<Map> with_levels(Entry& entry, const Map& plain, const MapTransform& place, const Execution& execution);
 
     const std::int64_t most_;
     std::mutex mutex_;  // guards all below, and what entries hold; whoever changes that also holds Entry::reading

@@ -6,13 +6,13 @@
 #include <span>
 
 #include "formats/ktx2/compress_ktx2.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
-Result<void> TextureWriter::begin(const std::string& path, const Codec& codec, int zstd_level) {
+Result<void> TextureWriter::begin(const std::string& path, const FileType& type, int zstd_level) {
     if (zstd_level > 0) {
-        compress_ = codec.compress;
+        compress_ = type.compress;
         zstd_level_ = zstd_level;
     }
     const auto open = [&path](std::optional<ScratchFile>& scratch) -> Result<void> {
@@ -43,7 +43,7 @@ Result<std::vector<std::byte>> TextureWriter::chosen(std::uint64_t offset, std::
 // Takes the plain blocks of each level that optimisation has not made smaller.
 Result<void> TextureWriter::choose_blocks() {
     const int level = zstd_level_ > 0 ? zstd_level_ : kJudgedZstdLevel;
-    const auto size_in = [&](const ScratchFile& blocks, const FileLayout::Place& place) {
+    const auto size_in = [&](const ScratchFile& blocks, const FileLayout::Level& place) {
         return compressed_size(place, level,
                                [&](std::uint64_t offset, std::size_t count) { return blocks.read_at(offset, count); });
     };
@@ -59,7 +59,7 @@ Result<void> TextureWriter::choose_blocks() {
 }
 
 Result<void> TextureWriter::copy_levels() {
-    for (const FileLayout::Place& place : layout_.levels) {
+    for (const FileLayout::Level& place : layout_.levels) {
         for (std::uint64_t done = 0; done < place.bytes; done += kChunkBytes) {
             const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kChunkBytes, place.bytes - done));
             const Result<std::vector<std::byte>> bytes = chosen(place.offset + done, count);
@@ -72,7 +72,7 @@ Result<void> TextureWriter::copy_levels() {
 
 Result<void> TextureWriter::commit() {
     if (!scratch_) return file_->commit();
-    const Result<std::uint64_t> size = guarded([&]() -> Result<std::uint64_t> {
+    const Result<std::uint64_t> size = no_throw([&]() -> Result<std::uint64_t> {
         if (plain_) {
             if (const Result<void> judged = choose_blocks(); !judged) return judged.error();
         }
@@ -90,7 +90,7 @@ Result<void> TextureWriter::commit() {
 }
 
 Result<void> TextureWriter::write(const LevelRows& rows) {
-    return guarded([&]() -> Result<void> {
+    return no_throw([&]() -> Result<void> {
         const Format format = packing_.head.format;
         const Extent extent{rows.map.extent().width, rows.height};
         const std::size_t size = level_bytes(format, extent);

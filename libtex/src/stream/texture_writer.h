@@ -14,8 +14,8 @@
 
 #include "files/output_file.h"
 #include "files/scratch_file.h"
-#include "formats/codecs.h"
 #include "formats/file_layout.h"
+#include "formats/file_types.h"
 #include "stream/level_writer.h"
 
 namespace tex::inline v1 {
@@ -31,7 +31,7 @@ public:
     // Writes what comes before the texels. Levels go to a scratch file first if they are compressed, because their
     // places are known only when the smaller ones are complete; and if their blocks are optimised, because a whole
     // level is needed to judge whether that makes it smaller.
-    Result<void> begin(const std::string& path, const Codec& codec, int zstd_level);
+    Result<void> begin(const std::string& path, const FileType& type, int zstd_level);
     [[nodiscard]] bool is_in_order() const override { return false; }
     [[nodiscard]] int rows_together() const override {
         const FormatInfo format = format_info(packing_.head.format);
@@ -57,7 +57,7 @@ private:
     std::optional<ScratchFile> scratch_;
     std::optional<ScratchFile> plain_;  // blocks without optimisation
     std::vector<bool> takes_plain_;     // for each level
-    decltype(Codec::compress) compress_ = nullptr;
+    decltype(FileType::compress) compress_ = nullptr;
     int zstd_level_ = 0;
 };
 

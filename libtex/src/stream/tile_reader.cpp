@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 

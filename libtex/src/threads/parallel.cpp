@@ -13,7 +13,7 @@
 
 #include "memory/lent_memory.h"
 #include "threads/fork_join.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "formats/asc/asc_words.h"
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 #include "formats/words.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -164,7 +164,7 @@ bool may_be_asc(std::span<const std::byte> head) {
 }
 
 Result<std::unique_ptr<RowSource>> open_asc(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
         WordReader words(file);
         const Result<AscHeader> header = read_asc_header(words);

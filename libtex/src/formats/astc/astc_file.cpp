@@ -9,7 +9,7 @@
 #include "blocks/astc_decode.h"
 #include "formats/bytes.h"
 #include "formats/channels.h"
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 namespace {

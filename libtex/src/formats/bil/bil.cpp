@@ -10,7 +10,7 @@
 
 #include "formats/bil/bil_header.h"
 #include "formats/words.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -37,12 +37,12 @@ bool is_bil(const InputFile& file, const ReadOptions&) {
 }
 
 Result<std::unique_ptr<RowSource>> open_bil(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         Result<InputFile> header = open_header(file.path());
         if (!header) return header.error();
         const Result<std::vector<std::byte>> text = header->read_rest(kLongestHeader);
         if (!text) return text.error();
-        Result<RawPlace> place = read_bil_header(*text, header->path(), has_extension(file.path(), ".flt"), options);
+        Result<RawTexels> place = read_bil_header(*text, header->path(), has_extension(file.path(), ".flt"), options);
         if (!place) return place.error();
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
         const std::int64_t left = *file.size() - place->end();

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 #include "formats/words.h"
 
 namespace tex::inline v1 {
@@ -113,8 +113,8 @@ Result<std::int64_t> pitch_in(const BilWords& words, std::int64_t row) {
 
 }  // namespace
 
-Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
-                                 const ReadOptions& options) {
+Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
+                                  const ReadOptions& options) {
     const Result<BilWords> found =
         words_of(std::string_view(reinterpret_cast<const char*>(text.data()), text.size()), path);
     if (!found) return found.error();
@@ -135,7 +135,7 @@ Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::
     const Result<std::int64_t> pitch = pitch_in(words, *width * static_cast<std::int64_t>(samples->bytes()));
     if (!pitch) return pitch.error();
 
-    RawPlace place{.extent = *extent, .samples = *samples, .first = *skip, .has_place = true};
+    RawTexels place{.extent = *extent, .samples = *samples, .first = *skip, .has_place = true};
     place.pitch = static_cast<std::size_t>(*pitch);
     if (no_data) place.no_data = float_of(*no_data);
     return place;

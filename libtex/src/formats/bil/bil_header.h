@@ -15,7 +15,7 @@ namespace tex::inline v1 {
 
 // Reads the text of a header. `is_float`: the file is called .flt. Errors: as open_bil(); they name `path`. May throw
 // std::bad_alloc.
-Result<RawPlace> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
-                                 const ReadOptions& options);
+Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
+                                  const ReadOptions& options);
 
 }  // namespace tex::inline v1

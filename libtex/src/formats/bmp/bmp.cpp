@@ -11,9 +11,9 @@
 #include "formats/bmp/bmp_rle.h"
 #include "formats/byte_range.h"
 #include "formats/bytes.h"
-#include "formats/claims.h"
 #include "formats/code_rows.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -158,7 +158,7 @@ Result<void> BmpRows::decode(int first, int count, std::byte* rows) {
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_bmp(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
         if (file.head().size() < kBmpFileHeader)
             return Error{ErrorCode::bad_data, file.path(), "damaged: the file ends within its header"};

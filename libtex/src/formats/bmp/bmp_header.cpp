@@ -8,7 +8,7 @@
 
 #include "formats/byte_range.h"
 #include "formats/bytes.h"
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 namespace {

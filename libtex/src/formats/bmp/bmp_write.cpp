@@ -9,8 +9,8 @@
 #include "formats/bmp/bmp_header.h"
 #include "formats/bottom_up.h"
 #include "formats/bytes.h"
-#include "formats/codecs.h"
-#include "threads/guard.h"
+#include "formats/file_types.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -43,8 +43,8 @@ std::vector<std::byte> headers_of(const TextureHead& head, std::uint64_t texels)
 }  // namespace
 
 Result<std::unique_ptr<RowTarget>> open_bmp_target(const TextureHead& head, WriteBytes write) {
-    return guarded([&]() -> Result<std::unique_ptr<RowTarget>> {
-        const Result<void> held = check_holds(codec_of(Container::bmp), head.format, {});
+    return no_throw([&]() -> Result<std::unique_ptr<RowTarget>> {
+        const Result<void> held = check_holds(file_type_of(Container::bmp), head.format, {});
         if (!held) return held.error();
         const std::size_t row = level_bytes(head.format, {head.extent.width, 1});
         const std::uint64_t texels =

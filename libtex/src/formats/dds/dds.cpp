@@ -13,11 +13,11 @@
 #include <tex/types.h>
 
 #include "formats/bytes.h"
-#include "formats/claims.h"
 #include "formats/dds/dds_format.h"
+#include "formats/format_codes.h"
 #include "formats/layers.h"
-#include "formats/marks.h"
 #include "formats/normal_mark.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -66,7 +66,7 @@ bool is_dxt5nm(const Swizzle& swizzle) {
 
 // The pixel format of a legacy header; nullopt if Direct3D 9 lacks the format.
 std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
-    DdsPixelFormat legacy = marks_of(widened(head.format)).legacy;
+    DdsPixelFormat legacy = codes_of(widened(head.format)).legacy;
     if (legacy.flags == 0) return std::nullopt;
     // ATI2 without this code means that y is first.
     if (legacy.four_cc == fourcc("ATI2") && head.swizzle[0] != Component::y) legacy.bit_count = fourcc("A2XY");
@@ -212,7 +212,7 @@ int wanted_levels(const Header& header, Extent extent, std::vector<std::string>&
 
 FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     std::optional<DdsPixelFormat> legacy = legacy_pixel_format(head);
-    const std::uint32_t dxgi = marks_of(widened(head.format)).dxgi.exact;
+    const std::uint32_t dxgi = codes_of(widened(head.format)).dxgi.exact;
     const bool dx10 = !legacy || (options.dds_header == DdsHeader::dx10 && dxgi != 0);
     DdsPixelFormat pixel_format = dx10 ? DdsPixelFormat{kDdpfFourCc, fourcc("DX10"), 0, {}} : *legacy;
     if (options.dds_mark) {

@@ -12,7 +12,7 @@
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
 
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 #include "rows/channel_names.h"
 
 namespace tex::inline v1 {

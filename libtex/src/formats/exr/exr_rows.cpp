@@ -18,7 +18,7 @@
 #include "formats/exr/exr_texture.h"
 #include "formats/reader/reader.h"
 #include "kernels/samples.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -143,7 +143,7 @@ Result<OpenedPart> open_layer(InputFile& file, const ReadOptions& options) {
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         Result<OpenedPart> opened = open_layer(file, options);
         if (!opened) return std::move(opened).error();
         return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(opened->reader, opened->channels, 0));
@@ -151,7 +151,7 @@ Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOpti
 }
 
 Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<TextureRows> {
+    return no_throw([&]() -> Result<TextureRows> {
         const Result<OpenedPart> opened = open_layer(file, options);
         if (!opened) return opened.error();
         Result<ExrTexture> described =

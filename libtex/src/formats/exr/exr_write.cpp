@@ -25,7 +25,7 @@
 #include "formats/exr/exr_part.h"
 #include "formats/exr/exr_waiting.h"
 #include "formats/row_target.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 #include "threads/pool.h"
 
 namespace tex::inline v1 {
@@ -215,7 +215,7 @@ Result<void> ExrRowTarget::finish() {
 const char* exr_version() { return OPENEXR_VERSION_STRING; }
 
 Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, WriteBytes write) {
-    return guarded([&]() -> Result<std::unique_ptr<RowTarget>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowTarget>> {
         if (format_info(head.format).sample != SampleKind::floating) {
             return Error{ErrorCode::unsupported,
                          {},
@@ -240,7 +240,7 @@ Result<std::unique_ptr<RowTarget>> open_exr_target(const TextureHead& head, Writ
 }
 
 Result<std::vector<std::byte>> encode_exr(const Texture& texture) {
-    return guarded([&] { return encode_rows(open_exr_target, texture, true); });
+    return no_throw([&] { return encode_rows(open_exr_target, texture, true); });
 }
 
 }  // namespace tex::inline v1

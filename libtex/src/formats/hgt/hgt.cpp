@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
-#include "formats/claims.h"
 #include "formats/raw/raw_rows.h"
+#include "formats/size_limits.h"
 #include "formats/words.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -23,9 +23,9 @@ constexpr float kHgtVoid = -32768.0f;
 bool is_hgt(const InputFile& file, const ReadOptions&) { return has_extension(file.path(), ".hgt"); }
 
 Result<std::unique_ptr<RowSource>> open_hgt(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
-        RawPlace place{.samples = {SampleKind::snorm, 16, true}, .has_place = true, .no_data = kHgtVoid};
+        RawTexels place{.samples = {SampleKind::snorm, 16, true}, .has_place = true, .no_data = kHgtVoid};
         const auto* const found = std::find_if(std::begin(kHgtExtents), std::end(kHgtExtents),
                                                [&](Extent extent) { return extent.texels() * 2 == *file.size(); });
         if (found == std::end(kHgtExtents)) {

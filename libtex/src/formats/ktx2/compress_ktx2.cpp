@@ -29,7 +29,7 @@ public:
     }
 
     // Returns the number of bytes written.
-    Result<std::uint64_t> compress(const FileLayout::Place& place, std::uint64_t offset) {
+    Result<std::uint64_t> compress(const FileLayout::Level& place, std::uint64_t offset) {
         ZSTD_CCtx_reset(context_.get(), ZSTD_reset_session_only);
         ZSTD_CCtx_setPledgedSrcSize(context_.get(), place.bytes);
         std::uint64_t written = 0;
@@ -95,7 +95,7 @@ Result<std::uint64_t> compress_ktx2(const FileLayout& layout, int level, const F
     return size;
 }
 
-Result<std::uint64_t> compressed_size(const FileLayout::Place& place, int level, const FetchBytes& fetch) {
+Result<std::uint64_t> compressed_size(const FileLayout::Level& place, int level, const FetchBytes& fetch) {
     const WriteBytes discard = [](std::uint64_t, std::span<const std::byte>) { return Result<void>(); };
     return LevelCompressor(level, fetch, discard).compress(place, 0);
 }

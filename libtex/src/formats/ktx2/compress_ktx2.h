@@ -23,7 +23,7 @@ inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;  // that are re
                                                   const WriteBytes& write);
 
 // The size of one level after that, without the rest of the file. Errors and exceptions: as compress_ktx2().
-[[nodiscard]] Result<std::uint64_t> compressed_size(const FileLayout::Place& place, int level, const FetchBytes& fetch);
+[[nodiscard]] Result<std::uint64_t> compressed_size(const FileLayout::Level& place, int level, const FetchBytes& fetch);
 
 // The level at which blocks are judged that a file stores without compression: what they are compressed with later is
 // not known.

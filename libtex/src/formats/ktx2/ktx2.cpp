@@ -13,13 +13,13 @@
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
-#include "formats/claims.h"
+#include "formats/format_codes.h"
 #include "formats/ktx2/key_values.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/ktx2/level_inflater.h"
 #include "formats/layers.h"
-#include "formats/marks.h"
 #include "formats/normal_mark.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -42,7 +42,7 @@ constexpr VkRow kVkFormats[] = {
 };
 
 std::optional<VkRow> find_vk_format(std::uint32_t vk) {
-    if (const auto marked = find_format(&FormatMarks::vk, vk)) return VkRow{vk, marked->format, marked->srgb, false};
+    if (const auto marked = find_format(&FormatCodes::vk, vk)) return VkRow{vk, marked->format, marked->srgb, false};
     for (const VkRow& row : kVkFormats) {
         if (row.vk == vk) return row;
     }
@@ -190,7 +190,7 @@ struct LayerChoice {
 };
 
 // The place of the chosen layer of level k, from the level's entry in the level index.
-Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, std::size_t k, LayerChoice layer,
+Result<StoredTexture::Level> place_of(const std::byte* entry, std::size_t size, std::size_t k, LayerChoice layer,
                                       const StoredTexture& texture, Extent extent, const std::string& name) {
     const bool is_compressed = texture.supercompression != Supercompression::none;
     const std::uint64_t offset = load_u64(entry);
@@ -207,11 +207,11 @@ Result<StoredTexture::Place> place_of(const std::byte* entry, std::size_t size, 
         return bad_data(name, "truncated: " + level_text + " ends beyond the end of the file");
     }
     const std::uint64_t before = layer.chosen * wanted;
-    if (!is_compressed) return StoredTexture::Place{extent, offset + before, wanted};
+    if (!is_compressed) return StoredTexture::Level{extent, offset + before, wanted};
     const Result<void> fits = check_claim(name, extent, static_cast<double>(decoded), static_cast<std::int64_t>(bytes),
                                           most_inflation(texture.supercompression));
     if (!fits) return fits.error();
-    return StoredTexture::Place{extent, offset, bytes, decoded, before};
+    return StoredTexture::Level{extent, offset, bytes, decoded, before};
 }
 
 }  // namespace
@@ -238,7 +238,7 @@ FileLayout ktx2_layout(const TextureHead& head) {
 
     ByteWriter writer;
     writer.text(kKtx2Magic);
-    writer.u32(marks_of(stored).vk.exact);
+    writer.u32(codes_of(stored).vk.exact);
     writer.u32(info.has_blocks() ? 1 : static_cast<std::uint32_t>(info.bits / 8));  // bytes of one value
     writer.u32(static_cast<std::uint32_t>(head.extent.width));
     writer.u32(static_cast<std::uint32_t>(head.extent.height));
@@ -253,7 +253,7 @@ FileLayout ktx2_layout(const TextureHead& head) {
     writer.u32(static_cast<std::uint32_t>(entries.size()));
     writer.u64(0);  // supercompression global data
     writer.u64(0);
-    for (const FileLayout::Place& place : layout.levels) {
+    for (const FileLayout::Level& place : layout.levels) {
         writer.u64(place.offset);
         writer.u64(place.bytes);
         writer.u64(place.bytes);  // uncompressed
@@ -306,7 +306,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
     for (std::size_t k = 0; k < levels; ++k) {
-        const Result<StoredTexture::Place> place =
+        const Result<StoredTexture::Level> place =
             place_of(index->data() + k * kLevelIndexBytes, size, k, {count.layers, *layer}, stored,
                      level_extent(*extent, static_cast<int>(k)), name);
         if (!place) return place.error();

@@ -13,8 +13,8 @@
 #include <zstd_errors.h>
 
 #include "formats/bytes.h"
-#include "formats/claims.h"
 #include "formats/ktx2/compress_ktx2.h"
+#include "formats/size_limits.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -37,7 +37,7 @@ Result<void> check_frame(std::span<const std::byte> head) {
 
 class ZstdInflater final : public LevelInflater {
 public:
-    ZstdInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+    ZstdInflater(FetchBytes fetch, const StoredTexture::Level& place, std::uint64_t decoded)
         : LevelInflater(std::move(fetch), place, decoded), stream_(ZSTD_createDStream()) {
         if (stream_ == nullptr) throw std::bad_alloc();
     }
@@ -113,7 +113,7 @@ Result<void> ZstdInflater::end() {
 
 class ZlibInflater final : public LevelInflater {
 public:
-    ZlibInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+    ZlibInflater(FetchBytes fetch, const StoredTexture::Level& place, std::uint64_t decoded)
         : LevelInflater(std::move(fetch), place, decoded) {}
 
 protected:
@@ -154,7 +154,7 @@ Result<void> ZlibInflater::inflate() {
 }  // namespace
 
 std::unique_ptr<LevelInflater> LevelInflater::make(Supercompression scheme, FetchBytes fetch,
-                                                   const StoredTexture::Place& place, std::uint64_t decoded) {
+                                                   const StoredTexture::Level& place, std::uint64_t decoded) {
     if (scheme == Supercompression::zlib) return std::make_unique<ZlibInflater>(std::move(fetch), place, decoded);
     return std::make_unique<ZstdInflater>(std::move(fetch), place, decoded);
 }

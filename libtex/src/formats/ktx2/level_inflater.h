@@ -23,7 +23,7 @@ class LevelInflater {
 public:
     // `decoded` is the number of bytes of the level. Throws std::bad_alloc.
     static std::unique_ptr<LevelInflater> make(Supercompression scheme, FetchBytes fetch,
-                                               const StoredTexture::Place& place, std::uint64_t decoded);
+                                               const StoredTexture::Level& place, std::uint64_t decoded);
     LevelInflater(const LevelInflater&) = delete;
     LevelInflater& operator=(const LevelInflater&) = delete;
     virtual ~LevelInflater() = default;
@@ -34,7 +34,7 @@ public:
     Result<void> read(std::uint64_t offset, std::span<std::byte> bytes);
 
 protected:
-    LevelInflater(FetchBytes fetch, const StoredTexture::Place& place, std::uint64_t decoded)
+    LevelInflater(FetchBytes fetch, const StoredTexture::Level& place, std::uint64_t decoded)
         : fetch_(std::move(fetch)), place_(place), decoded_(decoded) {}
 
     // Goes back to the first byte.
@@ -53,7 +53,7 @@ protected:
 
 private:
     const FetchBytes fetch_;
-    const StoredTexture::Place place_;
+    const StoredTexture::Level place_;
     const std::uint64_t decoded_;
     std::uint64_t position_ = 0;  // of the next byte
 };

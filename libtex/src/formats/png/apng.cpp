@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "formats/png/png_chunk.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -64,7 +64,7 @@ Bytes frame_control(std::uint32_t sequence, std::span<const std::byte> header, i
 
 Result<std::vector<std::byte>> join_png_frames(const std::vector<std::vector<std::byte>>& frames,
                                                int frames_per_second) {
-    return guarded([&]() -> Result<Bytes> {
+    return no_throw([&]() -> Result<Bytes> {
         const std::vector<Chunk> first = chunks_of(frames.front());
         const std::span<const std::byte> header = first.front().content;
         Bytes file(frames.front().begin(), frames.front().begin() + kSignature);

@@ -13,10 +13,10 @@
 #include <string>
 #include <string_view>
 
-#include "formats/claims.h"
 #include "formats/png/png_libpng.h"
 #include "formats/png/png_rows.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -159,7 +159,7 @@ bool is_made_for_iphones(const InputFile& file) {
 }
 
 Result<std::unique_ptr<RowSource>> open_decoder(InputFile& file, const ReadOptions& options, bool only_libpng) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         if (is_made_for_iphones(file))
             return Error{ErrorCode::unsupported, file.path(),
                          "a PNG that Xcode changed for iPhones (CgBI); \"xcrun pngcrush -revert-iphone-optimizations\" "

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -20,7 +20,7 @@ bool PngInput::fill() {
     begin_ = 0;
     end_ = 0;
     const Result<std::size_t> got =
-        guarded([&] { return file_.read(reinterpret_cast<std::byte*>(buffer_.get()), kBuffer); });
+        no_throw([&] { return file_.read(reinterpret_cast<std::byte*>(buffer_.get()), kBuffer); });
     if (!got) error_ = got.error();
     if (!got || *got == 0) return false;
     end_ = *got;

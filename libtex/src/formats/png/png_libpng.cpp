@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "formats/claims.h"
 #include "formats/normal_mark.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {

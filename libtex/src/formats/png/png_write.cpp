@@ -17,7 +17,7 @@
 #include "formats/png/png_chunk.h"
 #include "formats/png/png_state.h"
 #include "formats/row_target.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -186,7 +186,7 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, WriteBytes write) {
-    return guarded([&]() -> Result<std::unique_ptr<RowTarget>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowTarget>> {
         const FormatInfo format = format_info(head.format);
         const int color_type = png_color_type(format);
         if (color_type < 0) {
@@ -206,11 +206,11 @@ Result<std::unique_ptr<RowTarget>> open_png_target(const TextureHead& head, Writ
 }
 
 Result<std::vector<std::byte>> encode_png(const Texture& texture) {
-    return guarded([&] { return encode_rows(open_png_target, texture, false); });
+    return no_throw([&] { return encode_rows(open_png_target, texture, false); });
 }
 
 Result<std::vector<std::byte>> encode_indexed_png(const Level& indices, const std::vector<PngColor>& palette) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         std::vector<png_color> colors;
         colors.reserve(palette.size());
         for (const PngColor& color : palette) colors.push_back({color.r, color.g, color.b});

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "formats/claims.h"
 #include "formats/raw/raw_rows.h"
+#include "formats/size_limits.h"
 #include "formats/words.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -96,7 +96,7 @@ bool is_raw(const InputFile& file, const ReadOptions& options) {
 }
 
 Result<std::unique_ptr<RowSource>> open_raw(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         const std::string by_name = has_extension(file.path(), ".r32") ? "f32le" : "u16le";
         const Result<RawLayout> layout = parse_raw(options.raw.empty() ? by_name : options.raw);
         if (!layout) return layout.error();
@@ -104,7 +104,7 @@ Result<std::unique_ptr<RowSource>> open_raw(InputFile& file, const ReadOptions& 
         if (const Result<void> settled = file.settle(limit); !settled) return settled.error();
         const Result<Extent> extent = extent_of(file, *layout, options);
         if (!extent) return extent.error();
-        RawPlace place{.extent = *extent, .samples = samples_of(layout->type), .first = layout->skip};
+        RawTexels place{.extent = *extent, .samples = samples_of(layout->type), .first = layout->skip};
         if (layout->extent.width == 0)
             place.remark = "the length of the file means " + std::to_string(extent->width) + "x" +
                            std::to_string(extent->height) + " texels";

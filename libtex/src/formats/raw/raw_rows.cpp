@@ -26,7 +26,7 @@ double greatest_of(const RawSamples& samples) {
 
 class RawRows final : public RowSource {
 public:
-    RawRows(const InputFile& file, RawPlace place)
+    RawRows(const InputFile& file, RawTexels place)
         : file_(file), samples_(place.samples), first_(place.first),
           pitch_(place.pitch != 0 ? place.pitch : static_cast<std::size_t>(place.extent.width) * place.samples.bytes()),
           no_data_number_(place.no_data) {
@@ -113,13 +113,13 @@ void RawRows::store(const std::byte* rows, int first, int end, Image& image) con
 
 }  // namespace
 
-std::int64_t RawPlace::end() const {
+std::int64_t RawTexels::end() const {
     const auto row = static_cast<std::int64_t>(static_cast<std::size_t>(extent.width) * samples.bytes());
     const std::int64_t step = pitch != 0 ? static_cast<std::int64_t>(pitch) : row;
     return first + step * (extent.height - 1) + row;
 }
 
-std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawPlace place) {
+std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawTexels place) {
     return std::make_unique<RawRows>(file, std::move(place));
 }
 

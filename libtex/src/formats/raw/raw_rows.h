@@ -22,7 +22,7 @@ struct RawSamples {
     [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(bits / 8); }
 };
 
-struct RawPlace {
+struct RawTexels {
     Extent extent = {};
     RawSamples samples = {};
     std::int64_t first = 0;             // the place of the first texel
@@ -37,6 +37,6 @@ struct RawPlace {
 };
 
 // One channel, Y. The file must outlive the rows and have place.end() bytes. Several threads may decode at once.
-std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawPlace place);
+std::unique_ptr<RowSource> open_raw_rows(const InputFile& file, RawTexels place);
 
 }  // namespace tex::inline v1

@@ -14,10 +14,10 @@
 #include <half.h>
 
 #include "files/system_error.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/normal_mark.h"
 #include "formats/reader/reader_process.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -41,24 +41,24 @@ Result<ReaderHeader> describe_reader(ReaderProgram program, const ReadOptions& o
 }  // namespace
 
 Result<ReaderInfo> reader_info(const ReadOptions& options) {
-    return guarded([&]() -> Result<ReaderInfo> {
+    return no_throw([&]() -> Result<ReaderInfo> {
         const Result<std::string> program = find_reader(options);
         if (!program) return program.error();
         const Result<ReaderHeader> reply = describe_reader(ReaderProgram::pictures, options);
         if (!reply) return reply.error();
-        if (reply->landlock > INT_MAX) return nonsense({});
+        if (reply->landlock > INT_MAX) return invalid_answer({});
         // Without tex-reader-oiio there is no version.
         const Result<ReaderHeader> oiio = describe_reader(ReaderProgram::other_pictures, options);
         const std::string version = oiio ? std::string(oiio->reason, strnlen(oiio->reason, sizeof oiio->reason)) : "";
         const bool sound = std::all_of(version.begin(), version.end(), [](char c) { return c > 0x20 && c < 0x7f; });
-        if (!sound) return nonsense({});
+        if (!sound) return invalid_answer({});
         return ReaderInfo{*program, version, static_cast<int>(reply->landlock),
                           (reply->sandboxed & kFilesRestricted) != 0, (reply->sandboxed & kCallsFiltered) != 0};
     });
 }
 
 Result<InputFile> decode_with_reader(InputFile& file, const std::string& format, const ReadOptions& options) {
-    return guarded([&]() -> Result<InputFile> {
+    return no_throw([&]() -> Result<InputFile> {
         if (file.size()) {
             if (const Result<void> rewound = file.rewind(); !rewound) return rewound.error();
         }
@@ -75,9 +75,9 @@ Result<InputFile> decode_with_reader(InputFile& file, const std::string& format,
 
 Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead& head, const WriteOptions& options) {
     const FormatInfo info = format_info(head.format);
-    const Codec& codec = codec_of(container);
-    if (Result<void> held = check_holds(codec, head.format, options); !held) return held.error();
-    if (codec.reader_name == nullptr)
+    const FileType& type = file_type_of(container);
+    if (Result<void> held = check_holds(type, head.format, options); !held) return held.error();
+    if (type.reader_name == nullptr)
         return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
     ReaderHeader header;
     header.quality = static_cast<std::uint32_t>(options.jpeg_quality);
@@ -92,7 +92,7 @@ Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead
         return system_error({}, errno, "a file in memory");
     ReaderPicture picture;
     picture.options_ = options.reader;
-    picture.format_ = codec.reader_name;
+    picture.format_ = type.reader_name;
     picture.rows_ = std::move(*rows);
     picture.row_bytes_ = row_bytes(header);
     return picture;
@@ -115,7 +115,7 @@ Result<std::vector<std::byte>> ReaderPicture::encode() const {
 
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,
                                                   const WriteOptions& options) {
-    return guarded([&]() -> Result<std::vector<std::byte>> {
+    return no_throw([&]() -> Result<std::vector<std::byte>> {
         if (texture.levels.empty()) return Error{ErrorCode::unsupported, {}, "a texture without levels"};
         const Result<ReaderPicture> picture = ReaderPicture::open(container, head_of(texture), options);
         if (!picture) return picture.error();

@@ -41,7 +41,9 @@ Error reported_error(const ReaderJob& job, const ReaderHeader& header) {
     return {code, job.path, clean_reason(header)};
 }
 
-Error nonsense(const std::string& path) { return {ErrorCode::bad_data, path, "the decoder handed over nonsense"}; }
+Error invalid_answer(const std::string& path) {
+    return {ErrorCode::bad_data, path, "the decoder returned invalid data"};
+}
 
 bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count) {
     while (count > 0) {
@@ -57,9 +59,9 @@ bool read_exactly(int fd, std::uint64_t offset, std::byte* to, std::size_t count
 Result<std::vector<std::byte>> answered_bytes(const std::string& path, int result, const ReaderHeader& header) {
     const std::optional<FileStatus> status = FileStatus::of(result);
     const auto held = status ? static_cast<std::uint64_t>(status->version.size) : 0;
-    if (held < kReaderDataOffset || header.bytes > held - kReaderDataOffset) return nonsense(path);
+    if (held < kReaderDataOffset || header.bytes > held - kReaderDataOffset) return invalid_answer(path);
     std::vector<std::byte> bytes(header.bytes);
-    if (!read_exactly(result, kReaderDataOffset, bytes.data(), bytes.size())) return nonsense(path);
+    if (!read_exactly(result, kReaderDataOffset, bytes.data(), bytes.size())) return invalid_answer(path);
     return bytes;
 }
 

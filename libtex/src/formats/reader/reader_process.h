@@ -40,7 +40,7 @@ std::string worker_of(const ReaderJob& job);
 Error reported_error(const ReaderJob& job, const ReaderHeader& header);
 
 // The Error for a result that is impossible.
-Error nonsense(const std::string& path);
+Error invalid_answer(const std::string& path);
 
 class ReaderProcess {
 public:

@@ -20,7 +20,7 @@
 #include "files/system_error.h"
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_spawn.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -136,7 +136,7 @@ ReaderProcess& ReaderProcess::operator=(ReaderProcess&&) noexcept = default;
 ReaderProcess::~ReaderProcess() = default;
 
 Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
-    return guarded([&]() -> Result<ReaderProcess> {
+    return no_throw([&]() -> Result<ReaderProcess> {
         const Result<std::string> program = find_reader(options, job.program);
         if (!program) return program.error().of(job.path);
         auto state = std::make_unique<State>();
@@ -170,7 +170,7 @@ Result<ReaderHeader> ReaderProcess::wait_for_rows(std::uint64_t rows) {
 Result<ReaderHeader> ReaderProcess::finish() {
     while (state_->wait()) {
     }
-    return guarded([&]() -> Result<ReaderHeader> {
+    return no_throw([&]() -> Result<ReaderHeader> {
         const ReaderJob& job = state_->job;
         if (!state_->in_time || state_->ending->signal == SIGXCPU) {
             return Error{ErrorCode::bad_data, job.path,

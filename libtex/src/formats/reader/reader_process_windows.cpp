@@ -13,7 +13,7 @@
 
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_here.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
@@ -51,7 +51,7 @@ ReaderProcess& ReaderProcess::operator=(ReaderProcess&&) noexcept = default;
 ReaderProcess::~ReaderProcess() = default;
 
 Result<ReaderProcess> ReaderProcess::start(const ReaderJob& job, const ReadOptions& options) {
-    return guarded([&]() -> Result<ReaderProcess> {
+    return no_throw([&]() -> Result<ReaderProcess> {
         const Result<std::string> program = find_reader(options, job.program);
         if (!program) return program.error().of(job.path);
         auto state = std::make_unique<State>();

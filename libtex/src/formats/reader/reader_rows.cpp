@@ -16,11 +16,11 @@
 
 #include "files/nameless_file.h"
 #include "files/system_error.h"
-#include "formats/claims.h"
 #include "formats/normal_mark.h"
 #include "formats/reader/reader.h"
 #include "formats/reader/reader_process.h"
-#include "threads/guard.h"
+#include "formats/size_limits.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -225,13 +225,13 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (Result<void> started = start(options); !started) return started;
     const Result<ReaderHeader> header = process_->wait_for_rows(1);
     if (!header) return header.error();
-    if (!plausible(*header)) return nonsense(file_.path());
+    if (!plausible(*header)) return invalid_answer(file_.path());
     const Result<Extent> extent = claimed_extent(file_.path(), header->width, header->height, options);
     if (!extent) return extent.error();
     // Checks what the process claims before memory is allocated for it.
     const std::uint64_t claimed = tex::row_bytes(*header) * static_cast<std::uint64_t>(extent->height);
     if (claimed > static_cast<std::uint64_t>(std::max<std::int64_t>(options.reader_memory, 0)))
-        return nonsense(file_.path());
+        return invalid_answer(file_.path());
     header_ = *header;
     describe(*extent, plane_names(header_), tex::row_bytes(header_));
     const Result<Scale> scale = find_scale();
@@ -241,7 +241,8 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
     describe_mark(std::string(mark_in_description(text)));
     describe_no_data(no_data_value());
-    if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset)) return nonsense(file_.path());
+    if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset))
+        return invalid_answer(file_.path());
     describe_stored(header_.stored);
     if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation));
     return {};
@@ -260,7 +261,7 @@ Result<Scale> ReaderRows::find_scale() {
             if (const Result<ReaderHeader> done = process_->finish(); !done) return done.error();
             std::vector<std::byte> row(row_bytes());
             for (int j = 0; j < extent().height; ++j) {
-                if (!fetch(j, 1, row.data())) return nonsense(file_.path());
+                if (!fetch(j, 1, row.data())) return invalid_answer(file_.path());
                 if (!all_widened<T>(row.data(), row.size() / sizeof(T), bits)) return scale;
             }
             scale = {SampleKind::unorm, bits, scale.bits - bits};
@@ -294,7 +295,7 @@ Result<void> ReaderRows::peek(int first, int count, std::byte* rows) {
     const Result<ReaderHeader> there =
         process_->wait_for_rows(static_cast<std::uint64_t>(first) + static_cast<std::uint64_t>(count));
     if (!there) return there.error();
-    if (!fetch(first, count, rows)) return nonsense(file_.path());
+    if (!fetch(first, count, rows)) return invalid_answer(file_.path());
     return {};
 }
 
@@ -327,7 +328,7 @@ ReaderProgram program_for(std::string_view format) {
 }
 
 Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         auto rows = std::make_unique<ReaderRows>(file);
         if (const Result<void> opened = rows->open(options); !opened) return opened.error();
         return std::unique_ptr<RowSource>(std::move(rows));

@@ -22,7 +22,7 @@ namespace tex::inline v1 {
 //
 // Errors: io             the reader program is not there or cannot be started
 //         bad_data       not a picture; damaged; the decoder crashed, did not end within options.reader_timeout, or
-//                        handed over nonsense
+//                        returned invalid data
 //         unsupported    CMYK; WebP with alpha; more than kMaxReaderChannels channels; too large; more memory than
 //                        options.reader_memory
 //         out_of_memory

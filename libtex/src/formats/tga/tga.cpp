@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "formats/byte_range.h"
-#include "formats/claims.h"
 #include "formats/code_rows.h"
+#include "formats/size_limits.h"
 #include "formats/tga/tga_header.h"
 #include "formats/tga/tga_packets.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -161,7 +161,7 @@ bool may_be_tga(std::span<const std::byte> head) {
 }
 
 Result<std::unique_ptr<RowSource>> open_tga(InputFile& file, const ReadOptions& options) {
-    return guarded([&]() -> Result<std::unique_ptr<RowSource>> {
+    return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
         Result<TgaHeader> header = read_tga_header(file, options);
         if (!header) return header.error();

@@ -9,10 +9,10 @@
 
 #include "formats/bottom_up.h"
 #include "formats/bytes.h"
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 #include "formats/normal_mark.h"
 #include "formats/tga/tga_header.h"
-#include "threads/guard.h"
+#include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -60,8 +60,8 @@ std::vector<std::byte> trailer_of(const TextureHead& head, std::uint64_t place) 
 }  // namespace
 
 Result<std::unique_ptr<RowTarget>> open_tga_target(const TextureHead& head, WriteBytes write) {
-    return guarded([&]() -> Result<std::unique_ptr<RowTarget>> {
-        const Result<void> held = check_holds(codec_of(Container::tga), head.format, {});
+    return no_throw([&]() -> Result<std::unique_ptr<RowTarget>> {
+        const Result<void> held = check_holds(file_type_of(Container::tga), head.format, {});
         if (!held) return held.error();
         if (head.extent.width > kMostSide || head.extent.height > kMostSide)
             return Error{ErrorCode::unsupported, {}, "a side of a TGA has at most 65535 texels"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/marks.h"
+#include "formats/format_codes.h"
 
 #include <algorithm>
 #include <iterator>
@@ -20,7 +20,7 @@ constexpr DdsPixelFormat kRgb8 = {kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}};
 constexpr DdsPixelFormat kRgba8 = {kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}};
 
 // In the order of Format. The Direct3D 9 numbers are D3DFORMATs.
-constexpr FormatMarks kMarks[] = {
+constexpr FormatCodes kMarks[] = {
     {Format::bc1_unorm, coded(fourcc("DXT1")), {71, 72, 70}, {133, 134}, kKhrBc1, {0x83f1, 0x8c4d, 0x83f0}},
     {Format::bc2_unorm, coded(fourcc("DXT3")), {74, 75, 73}, {135, 136}, kKhrBc2, {0x83f2, 0x8c4e}},
     {Format::bc3_unorm, coded(fourcc("DXT5")), {77, 78, 76}, {137, 138}, kKhrBc3, {0x83f3, 0x8c4f}},
@@ -82,10 +82,10 @@ static_assert([] {
 
 }  // namespace
 
-const FormatMarks& marks_of(Format format) { return kMarks[static_cast<std::size_t>(format)]; }
+const FormatCodes& codes_of(Format format) { return kMarks[static_cast<std::size_t>(format)]; }
 
-std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, std::uint32_t number) {
-    for (const FormatMarks& row : kMarks) {
+std::optional<MarkedFormat> find_format(FormatNumbers FormatCodes::*registry, std::uint32_t number) {
+    for (const FormatCodes& row : kMarks) {
         const FormatNumbers& numbers = row.*registry;
         if (number == 0) break;
         if (number == numbers.exact || number == numbers.typeless) return MarkedFormat{row.format, false};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/codecs.h"
+#include "formats/file_types.h"
 
 #include <algorithm>
 #include <cstring>
@@ -16,12 +16,12 @@
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
+#include "formats/format_codes.h"
 #include "formats/hgt/hgt.h"
 #include "formats/ktx/ktx.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/ktx2/ktx2.h"
 #include "formats/lfs/lfs_pointer.h"
-#include "formats/marks.h"
 #include "formats/model/model_file.h"
 #include "formats/png/png.h"
 #include "formats/raw/raw.h"
@@ -36,7 +36,7 @@ bool is_written(Format format) { return !is_bptc(format); }
 // DDS has no number for EAC.
 bool is_written_in_dds(Format format) {
     if (!is_written(format)) return false;
-    const FormatMarks& marks = marks_of(widened(format));
+    const FormatCodes& marks = codes_of(widened(format));
     return marks.legacy.flags != 0 || marks.dxgi.exact != 0;
 }
 
@@ -60,7 +60,7 @@ bool is_unorm8_picture(Format format) { return is_unorm_picture(format) && forma
 bool is_unorm8_without_alpha(Format format) { return is_unorm8_picture(format) && format_info(format).channels != 4; }
 
 // The codecs of the reader process come last, but for those without a magic.
-constexpr Codec kCodecs[] = {
+constexpr FileType kFileTypes[] = {
     {.container = Container::dds,
      .magic = kDdsMagic,
      .holds = is_written_in_dds,
@@ -137,49 +137,48 @@ constexpr Codec kCodecs[] = {
 
 }  // namespace
 
-const Codec& codec_of(Container container) {
-    return *std::find_if(std::begin(kCodecs), std::end(kCodecs),
-                         [&](const Codec& codec) { return codec.container == container; });
+const FileType& file_type_of(Container container) {
+    return *std::find_if(std::begin(kFileTypes), std::end(kFileTypes),
+                         [&](const FileType& type) { return type.container == container; });
 }
 
-Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options) {
+Result<void> check_holds(const FileType& type, Format format, const WriteOptions& options) {
     if (auto valid = validate(options); !valid) return valid;
-    if (options.zstd > 0 && codec.compress == nullptr) {
+    if (options.zstd > 0 && type.compress == nullptr) {
         return Error{ErrorCode::unsupported,
                      {},
-                     std::string(name_of(kContainerNames, *codec.container)) + " is not compressed with Zstandard"};
+                     std::string(name_of(kContainerNames, *type.container)) + " is not compressed with Zstandard"};
     }
-    if (codec.holds(format)) return {};
+    if (type.holds(format)) return {};
     if (!is_written(format))
         return Error{
             ErrorCode::unsupported, {}, std::string(name_of(kFormatNames, format)) + " can be read, but not written"};
     return Error{ErrorCode::unsupported,
                  {},
-                 std::string(name_of(kContainerNames, *codec.container)) + " does not hold " +
+                 std::string(name_of(kContainerNames, *type.container)) + " does not hold " +
                      std::string(name_of(kFormatNames, format))};
 }
 
-Result<void> check_layer(const Codec& codec, const ReadOptions& options) {
-    if (options.layer.empty() || codec.has_layers) return {};
+Result<void> check_layer(const FileType& type, const ReadOptions& options) {
+    if (options.layer.empty() || type.has_layers) return {};
     return Error{ErrorCode::bad_option, {}, "a layer can be chosen only in EXR, DDS, KTX and KTX2 files"};
 }
 
-const Codec& codec_for(std::span<const std::byte> head) {
-    return *std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
-        if (codec.claims != nullptr) return codec.claims(head);
-        if (codec.magic.empty()) return codec.reader_name != nullptr;
-        return head.size() >= codec.magic.size() &&
-               std::memcmp(head.data(), codec.magic.data(), codec.magic.size()) == 0;
+const FileType& file_type_for(std::span<const std::byte> head) {
+    return *std::find_if(std::begin(kFileTypes), std::end(kFileTypes), [&](const FileType& type) {
+        if (type.claims != nullptr) return type.claims(head);
+        if (type.magic.empty()) return type.reader_name != nullptr;
+        return head.size() >= type.magic.size() && std::memcmp(head.data(), type.magic.data(), type.magic.size()) == 0;
     });
 }
 
-const Codec& codec_for(const InputFile& file, const ReadOptions& options) {
-    const Codec& by_head = codec_for(file.head());
+const FileType& file_type_for(const InputFile& file, const ReadOptions& options) {
+    const FileType& by_head = file_type_for(file.head());
     if (by_head.magic == kLfsMagic) return by_head;  // whatever the name says
-    const auto* const named = std::find_if(std::begin(kCodecs), std::end(kCodecs), [&](const Codec& codec) {
-        return codec.is_named != nullptr && codec.is_named(file, options);
+    const auto* const named = std::find_if(std::begin(kFileTypes), std::end(kFileTypes), [&](const FileType& type) {
+        return type.is_named != nullptr && type.is_named(file, options);
     });
-    return named == std::end(kCodecs) ? by_head : *named;
+    return named == std::end(kFileTypes) ? by_head : *named;
 }
 
 }  // namespace tex::inline v1

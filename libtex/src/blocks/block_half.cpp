@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "blocks/half_block.h"
+#include "blocks/block_half.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// half_block.h: one of the two 8-byte halves of a block with two channels, as a palette on a line: what rate-distortion
+// block_half.h: one of the two 8-byte halves of a block with two channels, as a palette on a line: what rate-distortion
 // optimisation copies and fits.
 //
 // A texel has the value offset + slope * weight, where its index selects the weight. Weights and slope follow from the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/claims.h"
+#include "formats/size_limits.h"
 
 #include <utility>
 

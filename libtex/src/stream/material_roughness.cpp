@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stream/own_roughness.h"
+#include "stream/material_roughness.h"
 
 #include <algorithm>
 #include <utility>
@@ -67,11 +67,11 @@ Result<Plane<float>> stretched(Plane<float> alpha2, Extent extent, const MipOpti
 
 }  // namespace
 
-OwnRoughness::OwnRoughness(float value, int width) : width_(width), everywhere_(Extent{width, 1}, value) {}
+MaterialRoughness::MaterialRoughness(float value, int width) : width_(width), everywhere_(Extent{width, 1}, value) {}
 
-Result<OwnRoughness> OwnRoughness::of(const Plane<float>& map, Extent base, const MipOptions& options,
-                                      const Execution& execution, ProgressSpan span) {
-    OwnRoughness own;
+Result<MaterialRoughness> MaterialRoughness::of(const Plane<float>& map, Extent base, const MipOptions& options,
+                                                const Execution& execution, ProgressSpan span) {
+    MaterialRoughness own;
     own.width_ = base.width;
     if (map.extent() == base) {
         own.map_ = &map;
@@ -86,7 +86,7 @@ Result<OwnRoughness> OwnRoughness::of(const Plane<float>& map, Extent base, cons
     return own;
 }
 
-void OwnRoughness::row(int j, float* roughness, float* alpha2) const {
+void MaterialRoughness::row(int j, float* roughness, float* alpha2) const {
     if (alpha2_.empty()) {
         clean_roughness(map_ == nullptr ? everywhere_.row(0) : map_->row(j), width_, roughness, alpha2);
         return;

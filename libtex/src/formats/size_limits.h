@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// claims.h: checks what a picture's header claims before memory is allocated for it.
+// size_limits.h: checks what a picture's header claims before memory is allocated for it.
 
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// own_roughness.h: the roughness of the material itself, for each row of a base level.
+// material_roughness.h: the roughness of the material itself, for each row of a base level.
 
 #pragma once
 
@@ -10,21 +10,21 @@
 
 namespace tex::inline v1 {
 
-class OwnRoughness {
+class MaterialRoughness {
 public:
     // Uses the same roughness everywhere.
-    explicit OwnRoughness(float value, int width);
+    explicit MaterialRoughness(float value, int width);
 
     // Uses a roughness map, which must outlive this object. If its extent differs from that of the base level, its
     // alpha^2 is halved in extent while it is twice as large, then sampled. Errors: out_of_memory, cancelled.
-    static Result<OwnRoughness> of(const Plane<float>& map, Extent base, const MipOptions& options,
-                                   const Execution& execution, ProgressSpan span = {});
+    static Result<MaterialRoughness> of(const Plane<float>& map, Extent base, const MipOptions& options,
+                                        const Execution& execution, ProgressSpan span = {});
 
     // Row j: the roughness and alpha^2. Both rows have room for whole vectors.
     void row(int j, float* roughness, float* alpha2) const;
 
 private:
-    OwnRoughness() = default;
+    MaterialRoughness() = default;
 
     int width_ = 0;
     Plane<float> everywhere_;            // one row of a constant roughness,

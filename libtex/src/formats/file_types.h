@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// codecs.h: the table of file types, one row for each type.
+// file_types.h: the table of file types, one row for each type.
 //
-// A new file type needs a folder beside this file and a row in codecs.cpp; if it is written, too, an enumerator with
-// its name and extensions in file.h. No other code depends on the type of a file.
+// A new file type needs a folder beside this file and a row in file_types.cpp; if it is written, too, an enumerator
+// with its name and extensions in file.h. No other code depends on the type of a file.
 
 #pragma once
 
@@ -23,7 +23,7 @@
 
 namespace tex::inline v1 {
 
-struct Codec {
+struct FileType {
     std::optional<Container> container = {};  // none: such files are only read
     std::string_view magic =
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
@@ -53,18 +53,18 @@ struct Codec {
     const char* reader_name = nullptr;
 };
 
-[[nodiscard]] const Codec& codec_of(Container container);
+[[nodiscard]] const FileType& file_type_of(Container container);
 
 // Errors: unsupported (the file type cannot hold the format, or is not compressed with Zstandard), bad_option
 // (options.zstd is out of range).
-[[nodiscard]] Result<void> check_holds(const Codec& codec, Format format, const WriteOptions& options);
+[[nodiscard]] Result<void> check_holds(const FileType& type, Format format, const WriteOptions& options);
 
 // Errors: bad_option (options.layer is set, and files of this type have no layers).
-[[nodiscard]] Result<void> check_layer(const Codec& codec, const ReadOptions& options);
+[[nodiscard]] Result<void> check_layer(const FileType& type, const ReadOptions& options);
 
-// The codec that reads a file beginning with `head`: the one with this magic or that claims it, otherwise the reader's.
-[[nodiscard]] const Codec& codec_for(std::span<const std::byte> head);
+// The type that reads a file beginning with `head`: the one with this magic or that claims it, otherwise the reader's.
+[[nodiscard]] const FileType& file_type_for(std::span<const std::byte> head);
 // The same for an open file, which may be of a type that has no magic: the options or its name then say what it is.
-[[nodiscard]] const Codec& codec_for(const InputFile& file, const ReadOptions& options);
+[[nodiscard]] const FileType& file_type_for(const InputFile& file, const ReadOptions& options);
 
 }  // namespace tex::inline v1

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// guard.h: keeps exceptions inside libtex. Every public function whose body may allocate memory runs it through
-// guarded().
+// no_throw.h: keeps exceptions inside libtex. Every public function whose body may allocate memory runs it through
+// no_throw().
 
 #pragma once
 
@@ -18,7 +18,7 @@ inline Error out_of_memory_error() { return {ErrorCode::out_of_memory, {}, "out 
 
 // Returns what `body` returns (a Result), or out_of_memory if the standard library could not allocate.
 template <class Body>
-auto guarded(Body&& body) -> decltype(body()) {
+auto no_throw(Body&& body) -> decltype(body()) {
     try {
         return std::forward<Body>(body)();
     } catch (const std::bad_alloc&) {
@@ -30,9 +30,9 @@ auto guarded(Body&& body) -> decltype(body()) {
 
 // The same for a verb whose planes come from execution.allocate.
 template <class Body>
-auto guarded(const Execution& execution, Body&& body) -> decltype(body()) {
+auto no_throw(const Execution& execution, Body&& body) -> decltype(body()) {
     const RowAllocation own(execution.allocate);
-    return guarded(std::forward<Body>(body));
+    return no_throw(std::forward<Body>(body));
 }
 
 }  // namespace tex::inline v1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// marks.h: the table of the numbers that identify a format in files, one row for each format.
+// format_codes.h: the table of the numbers that identify a format in files, one row for each format.
 
 #pragma once
 
@@ -19,7 +19,7 @@ struct FormatNumbers {
     std::uint32_t typeless = 0;
 };
 
-struct FormatMarks {
+struct FormatCodes {
     Format format;
     DdsPixelFormat legacy;    // in a Direct3D 9 header; flags are 0 if Direct3D 9 lacks the format
     FormatNumbers dxgi;       // DXGI_FORMAT
@@ -28,14 +28,14 @@ struct FormatMarks {
     FormatNumbers gl = {};    // glInternalFormat of OpenGL, for formats with blocks
 };
 
-[[nodiscard]] const FormatMarks& marks_of(Format format);
+[[nodiscard]] const FormatCodes& codes_of(Format format);
 
 // The format that a number identifies, and whether the number declares sRGB; nullopt for unknown numbers.
 struct MarkedFormat {
     Format format;
     bool srgb;
 };
-[[nodiscard]] std::optional<MarkedFormat> find_format(FormatNumbers FormatMarks::*registry, std::uint32_t number);
+[[nodiscard]] std::optional<MarkedFormat> find_format(FormatNumbers FormatCodes::*registry, std::uint32_t number);
 
 // From khr_df.h of the Khronos Data Format Specification.
 inline constexpr std::uint32_t kKhrRgbsda = 1;
