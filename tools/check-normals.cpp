@@ -95,12 +95,18 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     const auto model =
         std::find_if(inputs.begin(), inputs.end(), [](const std::string& name) { return is_model(name); });
     mesh_.check_models(command, {model == inputs.end() ? std::string() : *model, true});
-    std::vector<cli::NamedFile> others = {
-        {"--config", rules_.config()}, {"--height", rules_.height_file()}, {"--files-from", files.files_from}};
+    std::vector<cli::NamedFile> others = files.lists(), beside;
+    others.push_back({"--config", rules_.config()});
+    others.push_back({"--height", rules_.height_file()});
     if (mesh_.has_mesh()) {
         for (const std::string& file : mesh_.files()) others.push_back({"--mesh", file});
+    } else if (documents_.are_written()) {
+        for (const std::string& input : inputs) {
+            for (std::string& file : cli::files_beside_model(input, {running.read}))
+                beside.push_back({cli::printable(input), std::move(file)});
+        }
     }
-    documents_.check(inputs, std::move(others));
+    documents_.check(inputs, std::move(others), beside);
     if (auto read = documents_.read(); !read) return read;
     if (mesh_.has_mesh()) {  // jobs share it; one error is enough
         if (const auto space = mesh_.input(0, running.read, {running.threads, {}}); !space) return space.error();

@@ -60,7 +60,9 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
         if (curve_.is_asked()) return;
         if (inputs.size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (inputs[0] == "-" && inputs[1] == "-") throw cli::UsageError("standard input can only be read once");
-        documents_.check(sources());
+        std::vector<std::string> read = sources();
+        read.insert(read.end(), command.argument_files().begin(), command.argument_files().end());
+        documents_.check(read);
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",

@@ -129,7 +129,9 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
         if (task.joined.empty() && !high_.is_given())
             throw cli::UsageError("no high mesh: give LOW HIGH... -o FILE, or --high PATTERN");
     }
-    report_.check(tasks, {{"--depfile", files.depfile}, {"--files-from", files.files_from}});
+    std::vector<cli::NamedFile> others = files.lists();
+    others.push_back({"--depfile", files.depfile});
+    report_.check(tasks, std::move(others));
     return {};
 }
 

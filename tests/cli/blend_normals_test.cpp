@@ -163,6 +163,8 @@ TEST_F(BlendNormals, MisuseIsRefused) {
     refuses({"base.exr", "-o", "x.dds"}, "no detail: give BASE DETAIL... -o FILE");
     refuses({"base.exr", "detail.exr", "--out-dir", "out"}, "no detail");
     refuses({"base.exr", "detail.exr", "-o", "detail.exr"}, "the output detail.exr is the input detail.exr");
+    scratch_.write("list", "base.exr detail.exr\n");
+    refuses({"@list", "-o", "list", "--container", "exr"}, "the output list is the file of @list");
     refuses({"base.exr", "--detail", "detail.exr", "-o", "detail.exr"},
             "the output detail.exr is the input detail.exr");
     refuses({"base.exr", "detail.exr", "-o", "x.dds", "--mask", "bricks.png", "--depfile", "bricks.png"},

@@ -211,6 +211,14 @@ TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {
         refuses({"good.dds", option, "-"}, "needs the name of a file");
         refuses({"good.dds", option, "."}, "is a folder");
     }
+    refuses({"@list", "--report", "list"}, "list is the file of @list");
+    // A model's buffers and images, of normals or not; the model need not be sound.
+    scratch_.write("m.bin", "geometry");
+    scratch_.write("m.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"m.bin","byteLength":8}],)"
+                             R"("images":[{"uri":"bricks.png"}]})");
+    refuses({"m.gltf", "--sarif", "m.bin"}, "m.bin is the file of m.gltf");
+    refuses({"m.gltf", "--report", "./bricks.png"}, "bricks.png is the file of m.gltf");
+    EXPECT_EQ(scratch_.read("m.bin"), "geometry");
     refuses({"good.dds", "--sarif", "f", "--junit", "f"}, "--junit: f is the file of --sarif");
     refuses({"good.dds", "--report", "f", "--baseline-write", "f"}, "--report: f is the file of --baseline-write");
     refuses({"good.dds", "--sarif", "f", "--baseline", "f"}, "--sarif: f is the file of --baseline");

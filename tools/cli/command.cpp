@@ -159,6 +159,7 @@ std::string Command::unknown_option(const std::string& name) const {
 Result<std::vector<std::string>> Command::arguments_in(const std::string& file) {
     if (file == "-" && has_read_standard_input_) throw UsageError("standard input can only be read once");
     has_read_standard_input_ = has_read_standard_input_ || file == "-";
+    if (file != "-") argument_files_.push_back(file);
     const auto text = read_text_file(file);
     if (!text) return text.error();
     return list_of(*text);

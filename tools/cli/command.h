@@ -131,6 +131,8 @@ public:
     // The options in `names` that were given.
     [[nodiscard]] std::vector<std::string> given_of(const std::vector<std::string>& names) const;
     [[nodiscard]] const std::vector<std::string>& inputs() const { return inputs_; }
+    // The files that arguments were read from: those of @FILE.
+    [[nodiscard]] const std::vector<std::string>& argument_files() const { return argument_files_; }
     // Whether @- was given.
     [[nodiscard]] bool has_read_standard_input() const { return has_read_standard_input_; }
 
@@ -161,6 +163,7 @@ private:
     std::vector<std::function<void()>> checks_;
     bool finds_ = false;
     bool has_read_standard_input_ = false;
+    std::vector<std::string> argument_files_;
     bool help_ = false;
     bool version_ = false;
     bool list_options_ = false;

@@ -53,7 +53,10 @@ void CurveOptions::check(const Command& command) const {
     const std::vector<std::string> other = command.given_of(
         {"--y-b", "--level", "--mesh", "--max-mean", "--max-p999", "--max", "--heatmap", "--report", "--depfile"});
     if (!other.empty()) throw UsageError(fmt::format("{} and --rdo-means contradict each other", other.front()));
-    if (!plot_.empty()) check_document({"--plot", plot_}, command.inputs(), {});
+    if (plot_.empty()) return;
+    std::vector<std::string> read = command.inputs();
+    read.insert(read.end(), command.argument_files().begin(), command.argument_files().end());
+    check_document({"--plot", plot_}, read, {});
 }
 
 }  // namespace tex::cli

@@ -54,7 +54,7 @@ void FileOptions::add(Command& command, bool joins) {
     command.check([this, &command] { check(command); });
 }
 
-void FileOptions::check(const Command& command) const {
+void FileOptions::check(const Command& command) {
     if (!output.empty() && !out_dir.empty()) throw UsageError("--output and --out-dir contradict each other");
     if (!output.empty() && !name.empty()) throw UsageError("--output and --name contradict each other");
     if (!output.empty() && !root.empty()) throw UsageError("--output and --root contradict each other");
@@ -89,11 +89,18 @@ void FileOptions::add_list(Command& command) {
     command.flag(allow_empty, "--allow-empty", "accept a list of --files-from that names no input");
 }
 
-void FileOptions::check_inputs(const Command& command) const {
+void FileOptions::check_inputs(const Command& command) {
+    argument_files_ = command.argument_files();
     if (command.inputs().empty() && files_from.empty()) throw UsageError("no input; see " + command.name() + " --help");
     const auto dashes = std::count(command.inputs().begin(), command.inputs().end(), "-") +
                         (files_from == "-" ? 1 : 0) + (command.has_read_standard_input() ? 1 : 0);
     if (dashes > 1) throw UsageError("standard input can only be read once");
+}
+
+std::vector<NamedFile> FileOptions::lists() const {
+    std::vector<NamedFile> lists = {{"--files-from", files_from}};
+    for (const std::string& file : argument_files_) lists.push_back({"@" + file, file});
+    return lists;
 }
 
 Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) const {

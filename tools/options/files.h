@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "tasks/collisions.h"
 #include "tasks/name_pattern.h"
 #include "tasks/udim.h"
 
@@ -36,6 +37,9 @@ struct FileOptions {
     // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<Input>> list_inputs(const Command& command) const;
 
+    // The files that names of inputs were read from: those of --files-from and @FILE.
+    [[nodiscard]] std::vector<NamedFile> lists() const;
+
     // The fields of a name for this input. {dir} is relative to --root if that option is given. Throws UsageError if
     // the input is not in that folder.
     [[nodiscard]] NameFields fields_of(const std::string& input) const;
@@ -49,8 +53,10 @@ struct FileOptions {
 
 private:
     void add_list(Command& command);
-    void check(const Command& command) const;
-    void check_inputs(const Command& command) const;
+    void check(const Command& command);
+    void check_inputs(const Command& command);
+
+    std::vector<std::string> argument_files_;
 };
 
 }  // namespace tex::cli

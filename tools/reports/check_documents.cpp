@@ -38,12 +38,14 @@ std::vector<std::string> CheckDocuments::written() const {
 }
 
 // No two documents may be the same file, except that the written baseline may be the one that is read.
-void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<NamedFile> others) {
+void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<NamedFile> others,
+                           const std::vector<NamedFile>& beside) {
     if (!depfile_.empty() && written().empty()) throw UsageError("--depfile needs a document, such as --report");
     sources_ = inputs;
     for (const NamedFile& other : others) sources_.push_back(other.path);
     if (baseline_path_ != baseline_written_) sources_.push_back(baseline_path_);
     std::erase(sources_, std::string());
+    others.insert(others.end(), beside.begin(), beside.end());
     for (const NamedFile& document : std::initializer_list<NamedFile>{{"--baseline-write", baseline_written_},
                                                                       {"--baseline", baseline_path_},
                                                                       {"--report", page_path_},

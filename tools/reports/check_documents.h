@@ -28,13 +28,16 @@ class CheckDocuments {
 public:
     void add(Command& command);
 
+    [[nodiscard]] bool are_written() const { return !written().empty(); }
     [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
     // Findings are printed for GitHub instead of for people.
     [[nodiscard]] bool is_for_github() const { return is_for_github_; }
     [[nodiscard]] bool writes_baseline() const { return !baseline_written_.empty(); }
 
-    // Throws UsageError if a document is an input or one of `others`.
-    void check(const std::vector<std::string>& inputs, std::vector<NamedFile> others);
+    // Throws UsageError if a document is an input, one of `others`, from which documents are made, too, or one of
+    // `beside`, which they need not be made from.
+    void check(const std::vector<std::string>& inputs, std::vector<NamedFile> others,
+               const std::vector<NamedFile>& beside);
 
     // Reads the baseline. Errors: io, bad_data.
     [[nodiscard]] Result<void> read();

@@ -30,17 +30,17 @@ std::vector<std::string> files_of(const Task& task) {
 
 }  // namespace
 
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list) {
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists) {
     FileTable<std::string> inputs;
-    inputs.add(list, list);
+    for (const NamedFile& list : lists) inputs.add(list.path, "the file of " + list.option);
     for (const Task& task : tasks) {
-        inputs.add(task.input, task.input);
-        for (const std::string& input : task.prerequisites()) inputs.add(input, input);
+        inputs.add(task.input, "the input " + printable(task.input));
+        for (const std::string& input : task.prerequisites()) inputs.add(input, "the input " + printable(input));
     }
     const auto check_not_an_input = [&](const std::string& path) {
         const std::string* const input = path != "-" && is_special_file(path) ? nullptr : inputs.find(path);
         if (input == nullptr) return;
-        throw UsageError(fmt::format("the output {} is the input {}", printable(path), printable(*input)));
+        throw UsageError(fmt::format("the output {} is {}", printable(path), *input));
     };
 
     FileTable<const Task*> outputs;

@@ -10,16 +10,16 @@ namespace tex::cli {
 
 struct Task;
 
-// Throws UsageError if two tasks would write the same file, or if an output or the depfile is an input or the `list` of
-// inputs (empty if there is none). Files are compared by name, through symbolic and hard links, and as the file behind
-// standard input or output. Pipes, FIFOs and devices do not count.
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::string& list);
-
 // A file that an option names.
 struct NamedFile {
     std::string option;
     std::string path;
 };
+
+// Throws UsageError if two tasks would write the same file, or if an output or the depfile is an input or one of the
+// `lists` that inputs were read from. Files are compared by name, through symbolic and hard links, and as the file
+// behind standard input or output. Pipes, FIFOs and devices do not count.
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists);
 
 // Throws UsageError if `document`, which the run writes, is not the name of a file, is an input, or is one of `others`.
 // `others` are the other files that the run reads or writes; entries without a name do not count.

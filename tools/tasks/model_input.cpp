@@ -142,6 +142,15 @@ void ModelInput::report(Json& report) const {
     report["scale"] = map->scale;
 }
 
+std::vector<std::string> files_beside_model(const std::string& file, const MeshReadOptions& options) {
+    if (!is_model(file)) return {};
+    std::vector<std::string> files = buffers_of(file, options);
+    if (const auto model = read_model_maps(file, options)) {
+        for (const ModelImage& image : model->images) files.push_back(image.file);
+    }
+    return files;
+}
+
 std::vector<Input> with_maps_of_models(std::vector<Input> inputs, const std::string& material,
                                        const MeshReadOptions& options) {
     const auto last = std::make_shared<LastModel>();

@@ -56,6 +56,9 @@ struct ModelInput {
     void report(Json& report) const;
 };
 
+// The files that a model names: its buffers and images. None if the file is no model, or cannot be read as one.
+[[nodiscard]] std::vector<std::string> files_beside_model(const std::string& file, const MeshReadOptions& options);
+
 // The inputs, with each model replaced by its maps: all, or those of the material `material` if it is not empty. A
 // model without maps, or one that cannot be read, remains one input. Warnings and errors come from its job.
 [[nodiscard]] std::vector<Input> with_maps_of_models(std::vector<Input> inputs, const std::string& material,
