@@ -119,6 +119,26 @@ TEST(ReaderEncode, JpegStaysClose) {
     }
 }
 
+// Codes that were damaged leave bytes over before the end of the image. Padding does not count.
+TEST(ReaderEncode, JpegWithBytesLeftOverIsDamaged) {
+    const Result<Bytes> sound =
+        encode_with_reader(texture_of(Format::rgb8_unorm, {64, 64}), Container::jpeg, quick_write());
+    ASSERT_TRUE(sound) << sound.error().message();
+    const auto with = [&](const std::string& more) {
+        Bytes bytes = *sound;
+        const auto* const added = reinterpret_cast<const std::byte*>(more.data());
+        bytes.insert(bytes.end() - 2, added, added + more.size());
+        return read_encoded(bytes);
+    };
+    EXPECT_TRUE(with("")) << with("").error().message();
+    EXPECT_TRUE(with(std::string(32, '\0'))) << with(std::string(32, '\0')).error().message();
+    const Result<Image> damaged = with("some codes");
+    ASSERT_FALSE(damaged);
+    EXPECT_EQ(damaged.error().code, ErrorCode::bad_data);
+    EXPECT_NE(damaged.error().reason.find("extraneous bytes before marker 0xd9"), std::string::npos)
+        << damaged.error().reason;
+}
+
 TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
     const Texture texture = texture_of(Format::rgb8_unorm, {16, 16});
     const Container containers[] = {Container::tiff, Container::jpeg};

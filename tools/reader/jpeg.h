@@ -16,6 +16,8 @@ namespace tex::reader {
 struct JpegJob {
     const Task& task;
     ReaderHeader& header;
+    const unsigned char* begin = nullptr;  // of the file that is decoded
+    bool is_in_scans = false;              // texels are being decoded
 };
 
 // A codec that gives its memory back, which matters where it does not have a process of its own.

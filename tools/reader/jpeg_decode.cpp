@@ -20,7 +20,7 @@ namespace {
 // Kinds of JPEG that libjpeg-turbo does not decode.
 constexpr int kUnsupported[] = {JERR_BAD_PRECISION, JERR_SOF_UNSUPPORTED, JERR_ARITH_NOTIMPL, JERR_CONVERSION_NOTIMPL,
                                 JERR_NOTIMPL};
-// Warnings that texels are missing or wrong. Others, as of bytes between two segments, do no harm.
+// Warnings that texels are missing or wrong. Others do no harm, but for is_damage().
 constexpr int kDamage[] = {JWRN_JPEG_EOF, JWRN_HIT_MARKER, JWRN_HUFF_BAD_CODE, JWRN_MUST_RESYNC};
 
 template <std::size_t N>
@@ -42,8 +42,18 @@ bool is_one_of(const int (&codes)[N], int code) {
     leave(0);
 }
 
+// Bytes between two segments do no harm. After the last texel of a scan, they show that its codes were wrong, unless
+// they are padding: all the same.
+bool is_damage(j_common_ptr codec) {
+    const JpegJob& job = *static_cast<const JpegJob*>(codec->client_data);
+    if (codec->err->msg_code != JWRN_EXTRANEOUS_DATA || !job.is_in_scans) return false;
+    const unsigned char* const end = reinterpret_cast<j_decompress_ptr>(codec)->src->next_input_byte;
+    const unsigned char* const first = end - std::min<std::ptrdiff_t>(codec->err->msg_parm.i[0], end - job.begin);
+    return std::any_of(first, end, [&](unsigned char byte) { return byte != *first; });
+}
+
 void judge_warning(j_common_ptr codec, int level) {
-    if (level < 0 && is_one_of(kDamage, codec->err->msg_code)) give_up(codec);
+    if (level < 0 && (is_one_of(kDamage, codec->err->msg_code) || is_damage(codec))) give_up(codec);
 }
 
 void be_silent(j_common_ptr /*codec*/) {}
@@ -93,12 +103,12 @@ jpeg_error_mgr* handle_errors(jpeg_error_mgr& errors) {
 bool decode_jpeg(const Task& task, ReaderHeader& header) {
     JpegJob job{task, header};
     jpeg_error_mgr errors{};
-    JpegInput input;
+    std::vector<unsigned char> bytes;
     JpegCodec<jpeg_decompress_struct> codec;
     codec.err = handle_errors(errors);
     codec.client_data = &job;
     jpeg_create_decompress(&codec);
-    if (!open_jpeg_input(codec, input)) return refuse(header, ErrorCode::bad_data, "cannot be opened");
+    if (!open_jpeg_input(codec, bytes)) return refuse(header, ErrorCode::bad_data, "cannot be opened");
     constexpr unsigned kWholeMarker = 0xffff;
     jpeg_save_markers(&codec, JPEG_COM, kWholeMarker);
     jpeg_save_markers(&codec, JPEG_APP0 + 1, kWholeMarker);
@@ -114,6 +124,8 @@ bool decode_jpeg(const Task& task, ReaderHeader& header) {
     read_markers(codec, header);
     Canvas canvas(header);
     if (!canvas.begin(task)) return false;
+    job.begin = bytes.data();
+    job.is_in_scans = true;
     jpeg_start_decompress(&codec);
     const std::size_t row = std::size_t{codec.output_width} * static_cast<std::size_t>(codec.output_components);
     constexpr std::size_t kStrip = std::size_t{1} << 20;

@@ -14,14 +14,8 @@
 
 namespace tex::reader {
 
-// What libjpeg-turbo reads from; it must outlive the codec.
-struct JpegInput {
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file{nullptr, std::fclose};
-    std::vector<unsigned char> bytes;
-};
-
-// False if it cannot be opened.
-bool open_jpeg_input(jpeg_decompress_struct& codec, JpegInput& input);
+// False if it cannot be opened. `bytes` gets those of the file, and must outlive the codec.
+bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes);
 
 // Null if it cannot be opened.
 TIFF* open_tiff_input();

@@ -66,10 +66,10 @@ private:
 
 }  // namespace
 
-bool open_jpeg_input(jpeg_decompress_struct& codec, JpegInput& input) {
-    input.bytes.resize(here().size());
-    if (input.bytes.empty() || !here().read(0, input.bytes.data(), input.bytes.size())) return false;
-    jpeg_mem_src(&codec, input.bytes.data(), static_cast<unsigned long>(input.bytes.size()));
+bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes) {
+    bytes.resize(here().size());
+    if (bytes.empty() || !here().read(0, bytes.data(), bytes.size())) return false;
+    jpeg_mem_src(&codec, bytes.data(), static_cast<unsigned long>(bytes.size()));
     return true;
 }
 

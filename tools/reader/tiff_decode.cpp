@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "decoders.h"
@@ -25,6 +26,12 @@ void keep_error(const char* /*module*/, const char* format, va_list values) {
     char text[512];
     std::vsnprintf(text, sizeof text, format, values);
     if (first_error().empty()) first_error() = text;
+}
+
+// libtiff passes on what libjpeg-turbo warns of, which is damage. Its own warnings, as of tags in a wrong order, are
+// not.
+void keep_warning(const char* module, const char* format, va_list values) {
+    if (module != nullptr && std::string_view(module) == "JPEGLib") keep_error(module, format, values);
 }
 
 // The layout of the first picture of a file.
@@ -223,7 +230,7 @@ struct Closer {
 }  // namespace
 
 bool decode_tiff(const Task& task, ReaderHeader& header) {
-    TIFFSetWarningHandler(nullptr);
+    TIFFSetWarningHandler(keep_warning);
     TIFFSetErrorHandler(keep_error);
     first_error().clear();
     const std::unique_ptr<TIFF, Closer> file(open_tiff_input());
