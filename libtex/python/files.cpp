@@ -130,6 +130,7 @@ py::dict describe(const SourceInfo& info) {
     facts["y_doubtful"] = info.y_doubtful;
     facts["object_space"] = info.object_space;
     facts["z_doubtful"] = info.z_doubtful;
+    facts["not_finite"] = info.not_finite;
     facts["background"] = info.background;
     py::list others;
     for (const OtherChannel& other : info.others) {

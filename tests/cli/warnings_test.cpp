@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warnings: each names its file, on standard error and in the JSON of every command.
 
+#include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tex/tex.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/meshes.h"
@@ -99,6 +102,26 @@ TEST_F(Warnings, AboutHeightsAndComparisonsAreInTheJsonToo) {
     const auto failed = quiet("check-normals", {"plain.exr"});
     ASSERT_EQ(failed.size(), 1u);
     EXPECT_EQ(failed[0]["warnings"], json::array());
+}
+
+// With --drop, too, which silences warnings of channels alone.
+TEST_F(Warnings, CountNormalsThatAreNotFinite) {
+    constexpr Extent kExtent{4, 4};
+    float texels[16][3] = {};
+    for (auto& texel : texels) texel[2] = 1.0f;
+    texels[0][0] = std::numeric_limits<float>::quiet_NaN();
+    texels[5][1] = std::numeric_limits<float>::infinity();
+    Texture texture;
+    texture.format = Format::rgb32_float;
+    texture.levels.push_back({kExtent, std::vector<std::byte>(sizeof texels)});
+    std::memcpy(texture.levels[0].bytes.data(), texels, sizeof texels);
+    ASSERT_TRUE(write_texture(scratch_.path("bad.exr"), texture));
+    for (const std::string command : {"mip-normals", "pack-normals", "unpack-normals"}) {
+        const auto lines = quiet(command, {"bad.exr", "-o", "bad.dds", "--drop", "--no-sync"});
+        expect_warning(lines[0], "bad.exr", "2 texels are NaN or infinite, and become flat");
+    }
+    const auto blended = quiet("blend-normals", {"plain.exr", "bad.exr", "-o", "blend.dds", "--no-sync"});
+    expect_warning(blended[0], "bad.exr", "2 texels are NaN or infinite, and become flat");
 }
 
 TEST_F(Warnings, StandBesideAnError) {

@@ -195,6 +195,11 @@ TEST(Exr, LayersMayBeParts) {
             ASSERT_TRUE(image) << image.error().message();
             ASSERT_EQ(image->names, normal);
             EXPECT_EQ(image->planes[1].at(39, 36), 110.0f + 36 * 0.125f);
+            Result<InputFile> file = InputFile::from_memory("test.exr", bytes);
+            const Result<TextureRows> rows = open_exr_texture_rows(*file, {});
+            ASSERT_TRUE(rows) << rows.error().message();
+            EXPECT_EQ(rows->head.remarks,
+                      (std::vector<std::string>{"the first part beauty is read, of several that could hold normals"}));
             options.layer = "depth";
             const Result<Image> depth = read(bytes, options);
             ASSERT_TRUE(depth) << depth.error().message();

@@ -93,6 +93,20 @@ TEST(Reader, UnassociatedAlphaTouchesNoColour) {
     EXPECT_EQ(image->names, (std::vector<std::string>{"R", "G", "B", "A"}));
     EXPECT_EQ(image->planes[0].at(0, 0), 200 / 255.0f);
     EXPECT_EQ(image->planes[3].at(0, 0), 10 / 255.0f);
+    EXPECT_EQ(image->remark, "");
+}
+
+// Dividing would lose bits, and files that state it by mistake their values. So it is said.
+TEST(Reader, AssociatedAlphaIsSaid) {
+    TiffMaker tiff{1, 1};
+    tiff.samples = 4;
+    tiff.photometric = 2;
+    tiff.extra = 1;
+    tiff.data = raw<std::uint8_t>({10, 5, 2, 10});
+    const Result<Image> image = read(tiff.make());
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(image->planes[0].at(0, 0), 10 / 255.0f);
+    EXPECT_EQ(image->remark, kMultipliedText);
 }
 
 // What TIFF and EXIF call 6: the first row of the file is the right column of the picture.

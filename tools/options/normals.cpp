@@ -166,6 +166,9 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
                              path == job.task.map_path() ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
                  path);
     }
+    if (info.not_finite > 0) {
+        job.warn(fmt::format("{} texels are NaN or infinite, and become flat", info.not_finite), path);
+    }
     if (info.object_space && !info.z_doubtful) {
         job.warn(
             "its vectors face all directions, as in object space, and are read as tangent space; "

@@ -294,9 +294,10 @@ struct SourceInfo {
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
     bool y_known = false;      // y_axis comes from the file, the caller or the texels; otherwise it is assumed
     bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
-    bool object_space = false;  // more than 5 % of the texels that were inspected point away from the surface
-    bool z_doubtful = false;    // z is stored, but does not follow x and y: other data may be in its place
-    double background = 0.0;    // the share of those that are black, grey or white, if it is 1 % or more
+    bool object_space = false;    // more than 5 % of the texels that were inspected point away from the surface
+    bool z_doubtful = false;      // z is stored, but does not follow x and y: other data may be in its place
+    std::int64_t not_finite = 0;  // texels of the base level with a component that is NaN or infinite; they become flat
+    double background = 0.0;      // the share of those that are black, grey or white, if it is 1 % or more
     // Channels of the base level, whose values differ by more than 1.5 of 255 and repeat none of x, y and z. After
     // pack_file() and blend_file(): those of them that are not in every output. Encodings with four channels take alpha
     // along (can_hold()).

@@ -14,9 +14,9 @@ constexpr Rule kRules[] = {
     // -- the file ---------------------------------------------------------------------------------------------
     {"N101", "unreadable", file, error, true, "The file cannot be decoded.",
      "It is damaged, truncated, empty or of a kind that is not supported. Nothing else can be said about it.", "", ""},
-    {"N102", "header-disagrees", file, warning, true, "The header contradicts the data.",
-     "A size, count or flag in the header is not what the data are. This reader overlooks it; other readers refuse the "
-     "file or read other texels.",
+    {"N102", "header-disagrees", file, warning, true, "The header contradicts the data, or leaves a choice.",
+     "A size, count or flag in the header is not what the data are, or the file holds more than one picture that could "
+     "be meant. Other readers refuse the file or read other texels.",
      "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N103", "mips-incomplete", file, warning, true, "The mip chain ends before 1x1.",
      "A texture with some levels but not all is incomplete in OpenGL and samples as black there unless the application "

@@ -24,6 +24,9 @@
 
 namespace tex::inline v1 {
 
+inline constexpr const char* kMultipliedText =
+    "R, G and B are multiplied by alpha, as the file says, and are read as they are stored";
+
 // What a picture's orientation, which is not 1, means for it, as a sentence.
 std::string orientation_text(int orientation);
 
@@ -53,6 +56,8 @@ public:
     // Of heights: the strength that the file states (Texture::bumpiness_x).
     [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
     [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
+    // The file says that colours were multiplied by alpha. They are read as they are stored.
+    [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -119,6 +124,10 @@ protected:
     void describe_no_data(std::optional<float> value) { no_data_ = value; }
     void describe_stored(const StoredSamples& stored) { stored_ = stored; }
     void describe_remark(std::string remark) { remark_ = std::move(remark); }
+    void describe_multiplied() {
+        is_multiplied_ = true;
+        remark_ = kMultipliedText;
+    }
     void describe_orientation(int orientation) {
         orientation_ = orientation;
         if (orientation != 1) remark_ = orientation_text(orientation);
@@ -142,6 +151,7 @@ private:
     bool has_numbers_ = false;
     std::string remark_;
     int orientation_ = 1;
+    bool is_multiplied_ = false;
     std::optional<Strength> strength_;
     double scale_ = 1.0, offset_ = 0.0;
 };

@@ -104,9 +104,8 @@ Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
         if (auto inspector = inspector_for(input.settled.options(), input.info, extent_))
             input.inspector.emplace(std::move(*inspector));
         const SourceOptions& source = input.settled.options();
-        if (source.inspect && !source.drop_others)
-            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources(),
-                                 source.unpack.others.length);
+        if (source.inspect)
+            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources(), source);
         input.rows = &input.settled.add_to(flow, 0,
                                            {{},
                                             input.inspector ? &*input.inspector : nullptr,
@@ -120,10 +119,7 @@ Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
 void Blending::judge(OtherPlanes accounted_for) {
     for (Input& input : inputs_) {
         if (input.inspector) input.inspector->report(input.info);
-        if (input.others) {
-            input.info.z_doubtful = input.others->z_is_something_else();
-            input.info.others = input.others->found();
-        }
+        if (input.others) input.info.others = input.others->report(input.info);
         if (&input == &base_) input.info.others = left_out(std::move(input.info.others), accounted_for);
     }
 }

@@ -32,12 +32,13 @@ Result<void> turn_up(Source& source) {
     return {};
 }
 
-// Sets SourceInfo::others.
-Result<void> look_at_others(const Texture& texture, bool lengths, Source& source, const Execution& execution) {
+// Sets SourceInfo::others, z_doubtful and not_finite.
+Result<void> look_at_others(const Texture& texture, const SourceOptions& options, Source& source,
+                            const Execution& execution) {
     const int channels = format_info(texture.format).channels;
     const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
     if (!sources) return sources.error();
-    OtherChannels others(texture, texture.extent(), *sources, lengths);
+    OtherChannels others(texture, texture.extent(), *sources, options);
     if (others.empty()) return {};
     const Result<Image> image = decode(texture, 0, execution.quiet());
     if (!image) return image.error();
@@ -47,8 +48,7 @@ Result<void> look_at_others(const Texture& texture, bool lengths, Source& source
         for (std::size_t c = 0; c < image->planes.size(); ++c) row[c] = image->planes[c].row(j);
         others.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, map.extent().width);
     }
-    source.info.others = others.found();
-    source.info.z_doubtful = others.z_is_something_else();
+    source.info.others = others.report(source.info);
     return {};
 }
 
@@ -83,8 +83,8 @@ Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool
         if (const Result<void> turned = turn_up(source); !turned) return turned.error();
     }
     inspect(source.chain.levels.front(), options, source.info);
-    if (options.inspect && !options.drop_others) {
-        const Result<void> looked = look_at_others(texture, options.unpack.others.length, source, execution);
+    if (options.inspect) {
+        const Result<void> looked = look_at_others(texture, options, source, execution);
         if (!looked) return looked.error();
     }
     return source;

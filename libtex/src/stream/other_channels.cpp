@@ -17,11 +17,12 @@ constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 an
 
 }  // namespace
 
-OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources, bool lengths)
-    : sources_(sources),
-      judges_z_(!lengths && sources.z >= 0 && format_info(head.format).sample != SampleKind::floating),
+OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options)
+    : sources_(sources), is_floating_(format_info(head.format).sample == SampleKind::floating),
+      judges_z_(!options.drop_others && !options.unpack.others.length && sources.z >= 0 && !is_floating_),
       is_unsigned_(format_info(head.format).sample == SampleKind::unorm), z_step_(z_step(extent.height)),
-      lengths_(lengths && sources.z >= 0) {
+      lengths_(!options.drop_others && options.unpack.others.length && sources.z >= 0) {
+    if (options.drop_others) return;
     constexpr float kNone = std::numeric_limits<float>::infinity();
     constexpr int kAlpha = 3;
     for (int c = 0; c < format_info(head.format).channels; ++c) {
@@ -54,6 +55,14 @@ void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const Ve
     }
 }
 
+void OtherChannels::count_not_finite(const float* const (&channels)[4], int width) {
+    const float *const x = channels[sources_.x], *const y = channels[sources_.y];
+    const float* const z = sources_.z < 0 ? y : channels[sources_.z];
+    int count = 0;
+    for (int i = 0; i < width; ++i) count += 0.0f * x[i] + 0.0f * y[i] + 0.0f * z[i] == 0.0f ? 0 : 1;
+    if (count > 0) not_finite_ += count;
+}
+
 void OtherChannels::look_at_lengths(const float* const (&channels)[4], int width) {
     Plane<float> row(Extent{width, 1});
     values_of_lengths(channels[sources_.x], channels[sources_.y], channels[sources_.z], is_unsigned_, width,
@@ -71,6 +80,7 @@ void OtherChannels::add_row(int j, const float* const (&channels)[4], const Vect
         const std::lock_guard lock(mutex_);
         z_.add(z);
     }
+    if (is_floating_) count_not_finite(channels, width);
     if (lengths_) look_at_lengths(channels, width);
     if (seen_.empty()) return;
     std::vector<Seen> row;
@@ -98,6 +108,12 @@ std::vector<OtherChannel> OtherChannels::found() const {
     }
     if (longest_ - shortest_ > kVaries) found.push_back({'L', shortest_, longest_});
     return found;
+}
+
+std::vector<OtherChannel> OtherChannels::report(SourceInfo& info) const {
+    info.z_doubtful = z_.is_something_else() || z_.is_surely_something_else();
+    info.not_finite = not_finite_;
+    return found();
 }
 
 std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlanes accounted_for) {

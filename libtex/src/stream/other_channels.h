@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// other_channels.h: looks at the channels of a map that hold no part of its normals, and whether z is what it seems.
+// other_channels.h: looks at the channels of a map that hold no part of its normals, whether z is what it seems, and
+// whether floats are finite.
 
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -17,11 +20,11 @@ namespace tex::inline v1 {
 
 class OtherChannels {
 public:
-    // `head` describes the map. Colours that the file itself states to be constant are not looked at. `lengths`: the
-    // lengths of vectors hold data.
-    OtherChannels(const Texture& head, Extent extent, const Sources& sources, bool lengths);
+    // `head` describes the map. Colours that the file itself states to be constant are not looked at. With
+    // options.drop_others, only floats are.
+    OtherChannels(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options);
 
-    [[nodiscard]] bool empty() const { return seen_.empty() && !judges_z_ && !lengths_; }
+    [[nodiscard]] bool empty() const { return seen_.empty() && !judges_z_ && !lengths_ && !is_floating_; }
     // The channels to look at: bit c is set for channel c.
     [[nodiscard]] bool wants(int channel) const;
 
@@ -29,9 +32,8 @@ public:
     // Rows may come in any order, from any thread.
     void add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width);
 
-    // To be called after all rows.
-    [[nodiscard]] std::vector<OtherChannel> found() const;
-    [[nodiscard]] bool z_is_something_else() const { return z_.is_something_else() || z_.is_surely_something_else(); }
+    // To be called after all rows: says what was found, and returns the channels.
+    [[nodiscard]] std::vector<OtherChannel> report(SourceInfo& info) const;
 
 private:
     struct Seen {
@@ -39,10 +41,14 @@ private:
         float least, greatest;
         float off_x, off_y, off_z;  // the greatest difference from the channels of x and y, and from z as a code
     };
+    void count_not_finite(const float* const (&channels)[4], int width);
     void look_at_lengths(const float* const (&channels)[4], int width);
     void look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const;
 
+    [[nodiscard]] std::vector<OtherChannel> found() const;
+
     const Sources sources_;
+    const bool is_floating_;
     const bool judges_z_;  // it is stored as a whole number
     const bool is_unsigned_;
     const int z_step_;  // distance between the rows whose z is judged
@@ -51,6 +57,7 @@ private:
     std::vector<Seen> seen_;
     float shortest_ = std::numeric_limits<float>::infinity(), longest_ = 0.0f;  // what the lengths hold
     ZEvidence z_;
+    std::atomic<std::int64_t> not_finite_{0};
 };
 
 // The channels without these.

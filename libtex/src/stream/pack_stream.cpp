@@ -228,8 +228,8 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     Flow flow;
     flow.set_rows_together(targets_.rows_together());
     std::optional<OtherChannels> others;
-    if (level == first_ && options_.source.inspect && !options_.source.drop_others)
-        others.emplace(map_.map().head(), extent(level), map_.sources(), options_.source.unpack.others.length);
+    if (level == first_ && options_.source.inspect)
+        others.emplace(map_.map().head(), extent(level), map_.sources(), options_.source);
     const Stage& unpacked = map_.add_to(
         flow, level,
         {options_.scale, inspector ? &*inspector : nullptr, others && !others->empty() ? &*others : nullptr, kept_});
@@ -241,8 +241,7 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     }
     if (Result<void> done = flow.run(execution, sizes_); !done) return done;
     if (inspector) inspector->report(report_.source);
-    if (others) report_.source.z_doubtful = others->z_is_something_else();
-    if (others) report_.source.others = left_out(others->found(), accounted_for());
+    if (others) report_.source.others = left_out(others->report(report_.source), accounted_for());
     return {};
 }
 

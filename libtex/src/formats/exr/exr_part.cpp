@@ -259,8 +259,25 @@ std::vector<ExrChannel> channels_of(const Imf::Header& header) {
     return channels;
 }
 
+namespace {
+
+ExrLayer first_part(const ExrHeaders& headers) {
+    ExrLayer layer{0, channels_of(headers[0])};
+    const auto could_hold_normals = [&](int part) {
+        return !channel_groups(names_of(channels_of(headers[part]))).empty();
+    };
+    for (int part = 1; part < headers.count() && layer.remark.empty(); ++part) {
+        if (!could_hold_normals(part)) continue;
+        const std::string name = headers[0].hasName() ? " " + list_of_names({headers[0].name()}) : std::string();
+        layer.remark = "the first part" + name + " is read, of several that could hold normals";
+    }
+    return layer;
+}
+
+}  // namespace
+
 Result<ExrLayer> find_layer(const ExrHeaders& headers, const std::string& name) {
-    if (name.empty()) return ExrLayer{0, channels_of(headers[0])};
+    if (name.empty()) return first_part(headers);
     std::vector<std::string> names;  // of the channels of all parts
     std::vector<std::pair<int, ExrChannel>> channels;
     for (int part = 0; part < headers.count(); ++part) {

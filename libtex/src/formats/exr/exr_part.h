@@ -89,6 +89,7 @@ std::vector<std::string> names_of(const std::vector<ExrChannel>& channels);
 struct ExrLayer {
     int part = 0;
     std::vector<ExrChannel> channels;
+    std::string remark = {};  // if it is the first part, and others could hold normals, too
 };
 
 // The channels of the layer with this name, or, without a name, all of the first part. A part's name counts as the

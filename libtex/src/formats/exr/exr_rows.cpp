@@ -102,6 +102,7 @@ struct OpenedPart {
     Imf::Header header;  // as the file has it
     std::shared_ptr<ExrReader> reader;
     std::vector<ExrChannel> channels;
+    std::string remark;  // of ExrLayer
 };
 
 // Whether a decoded part is what its header announced: it has the same texels and, if any are used, the same levels.
@@ -137,7 +138,8 @@ Result<OpenedPart> open_layer(InputFile& file, const ReadOptions& options) {
     if (!layer) return std::move(layer).error();
     Result<std::shared_ptr<ExrReader>> reader = open_part(file, *headers, layer->part, options);
     if (!reader) return std::move(reader).error();
-    return OpenedPart{(*headers)[layer->part], std::move(*reader), std::move(layer->channels)};
+    return OpenedPart{(*headers)[layer->part], std::move(*reader), std::move(layer->channels),
+                      std::move(layer->remark)};
 }
 
 }  // namespace
@@ -159,6 +161,7 @@ Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& op
         if (!described) return std::move(described).error();
         TextureRows texture;
         texture.head = std::move(described->head);
+        if (!opened->remark.empty()) texture.head.remarks.push_back(opened->remark);
         for (int level = 0; level < described->levels; ++level)
             texture.levels.push_back(std::make_unique<ExrRows>(opened->reader, described->channels, level));
         texture.take_planes_in_order();

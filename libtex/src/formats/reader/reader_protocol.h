@@ -92,10 +92,10 @@ struct ReaderHeader {
     std::uint64_t rows_done = 0;
     std::uint64_t bytes = 0;  // of an encoded file
     std::uint32_t has_no_data = 0;
-    std::uint32_t quality = 0;      // encode: of a JPEG, 1 to 100
-    double no_data = 0;             // samples of this value hold no data, as the file says
-    std::uint32_t orientation = 1;  // 1 to 8, as in TIFF and EXIF; the rows have been turned accordingly
-    std::uint32_t unused = 0;
+    std::uint32_t quality = 0;        // encode: of a JPEG, 1 to 100
+    double no_data = 0;               // samples of this value hold no data, as the file says
+    std::uint32_t orientation = 1;    // 1 to 8, as in TIFF and EXIF; the rows have been turned accordingly
+    std::uint32_t is_multiplied = 0;  // colours by alpha, as the file says
     StoredSamples stored;
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length

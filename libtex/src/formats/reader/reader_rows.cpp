@@ -244,6 +244,7 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset))
         return invalid_answer(file_.path());
     describe_stored(header_.stored);
+    if (header_.is_multiplied != 0) describe_multiplied();
     if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation));
     return {};
 }
