@@ -27,6 +27,7 @@
 #include "checks/sign_rules.h"
 #include "checks/value_rules.h"
 #include "formats/level_planes.h"
+#include "rows/other_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
@@ -95,7 +96,10 @@ bool has_more_data(const Stored& stored, const TexelCounts& counts) {
     const auto equal = [&](std::size_t a, std::size_t b) {
         for (int j = 0; j < stored.extent().height; ++j) {
             const float* row = planes[a].row(j);
-            if (!std::equal(row, row + stored.extent().width, planes[b].row(j))) return false;
+            const auto is_near = [&](float v, float w) {
+                return std::abs(v - w) <= (stored.in_blocks ? kSameInBlocks : 0.0f);
+            };
+            if (!std::equal(row, row + stored.extent().width, planes[b].row(j), is_near)) return false;
         }
         return true;
     };

@@ -3,6 +3,9 @@
 // afterwards, there is no new one, and nothing else is lost.
 
 #include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -227,6 +230,37 @@ TEST_F(Fixes, ThatWouldLoseDataAreSentences) {
 }
 
 // The advice of N309, which no command follows: turn the picture back, and let blend-normals turn the vectors, too.
+TEST_F(Fixes, NameFilesThatBeginAsListsDo) {
+    go("bake-normals waves.png -o ./@n.png --bumpiness 8 --y down --no-sync");
+    go("check-normals --json --require y=up -- @n.png > found || true");
+    const std::string fix = finding(nlohmann::json::parse(scratch_.read("found")), "N401")["fix"];
+    EXPECT_EQ(fix.find("pack-normals ./@n.png "), 0u) << fix;
+    go(fix + " --no-sync");
+}
+
+TEST_F(Fixes, FillHeightsThatAreNotValid) {
+    std::vector<float> heights(64 * 64);
+    for (std::size_t k = 0; k < heights.size(); ++k)
+        heights[k] = 0.0001f * static_cast<float>(k % 64 * (63 - k % 64) * (k / 64) * (63 - k / 64));
+    heights[100] = std::numeric_limits<float>::quiet_NaN();
+    Texture texture;
+    texture.format = Format::r32_float;
+    texture.levels.push_back({{64, 64}, std::vector<std::byte>(heights.size() * sizeof(float))});
+    std::memcpy(texture.levels[0].bytes.data(), heights.data(), texture.levels[0].bytes.size());
+    ASSERT_TRUE(write_texture(scratch_.path("voids.exr"), texture));
+    repair("voids.exr", "N210", "");
+}
+
+// In blocks, R, G and B that hold the same differ by what 5 and 6 bits differ.
+TEST_F(Fixes, KnowThatColoursRepeatEachOther) {
+    const std::string rock = TEX_SOURCE_DIR "/../shared/data/dds/torque_rock_DXT5nm_GGGR_256_mips9.dds";
+    if (!std::filesystem::exists(rock)) GTEST_SKIP() << "../shared/data is not there";
+    go("cp " + rock + " rock.dds");
+    const std::string fix = finding(check("rock.dds", ""), "N215")["fix"];
+    go(fix + " --no-sync --quiet");
+    EXPECT_EQ(ids(check("FIXED.dds", "")).count("N215"), 0u);
+}
+
 TEST_F(Fixes, TurnedPicturesAreTurnedBackAndTurnedRight) {
     go("cp " TEX_SOURCE_DIR
        "/samples/bricks.png . && bake-normals bricks.png -o b.png --bumpiness 12 --no-sync;"

@@ -131,7 +131,8 @@ std::string shell_word(const std::string& word) {
 }
 
 std::string shell_file(const std::string& name) {
-    return shell_word(name.size() > 1 && name.front() == '-' ? "./" + name : name);
+    const bool is_argument = name.size() > 1 && (name.front() == '-' || name.front() == '@');
+    return shell_word(is_argument ? "./" + name : name);
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t width) {

@@ -33,7 +33,8 @@ namespace tex::cli {
 // $'...', which bash, zsh and ksh understand.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-// The name of a file as one word of a command line. A name that begins with a hyphen is not an option.
+// The name of a file as one word of a command line. A name that begins with a hyphen is not
+// an option, and one that begins with @ no list of arguments.
 [[nodiscard]] std::string shell_file(const std::string& name);
 
 // `text` broken at blanks into lines of at most `width` characters. A longer word gets its own line.

@@ -216,6 +216,8 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     }
     std::string fix = command.program + " FILE";
     for (const std::string& option : command.options) fix += " " + option;
+    // Only 8 bits have neither NaN nor values that a file may state to be no data.
+    if (id == "N210" && format_info(report.format).bits > 8) fix += " --fill-invalid";
     fix += " --format SAME -o FIXED";
     std::string same(name_of(kEncodingNames, target->encoding));
     if (format_info(encoding_info(target->encoding).format).has_blocks()) same += " --effort best";

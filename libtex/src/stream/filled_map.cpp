@@ -89,12 +89,14 @@ public:
         Result<Image> image = decode_filled(*texture, *swizzle, options_, execution_);
         if (!image) return image.error();
         image_ = std::move(*image);
+        swizzle_ = *swizzle;
         head_ = std::move(*texture);
         head_.levels.clear();
         rows_.emplace(image_);
         return {};
     }
     [[nodiscard]] const Texture& head() const override { return head_; }
+    [[nodiscard]] std::optional<Swizzle> found_swizzle() const override { return swizzle_; }
     [[nodiscard]] int levels() const override { return 1; }
     [[nodiscard]] Extent extent(int) const override { return rows_->extent(); }
     StoredChannels add_to(Flow& flow, int, const std::vector<bool>&) override {
@@ -119,6 +121,7 @@ private:
     const SourceOptions& options_;
     const Execution execution_;
     Texture head_;
+    std::optional<Swizzle> swizzle_;
     Image image_;
     std::optional<DecodedRows> rows_;
 };

@@ -34,6 +34,8 @@ public:
     [[nodiscard]] virtual Extent extent(int level) const = 0;
     // Whether y points up in the rows, whatever the head says: steps hand over normals as they are in memory.
     [[nodiscard]] virtual bool has_y_up() const { return false; }
+    // The layout, if the rows no longer show it: those of a filled map have been changed.
+    [[nodiscard]] virtual std::optional<Swizzle> found_swizzle() const { return std::nullopt; }
     // Adds stages that make the rows of a level, as they are stored. `wanted` are the channels that will be read.
     virtual StoredChannels add_to(Flow& flow, int level, const std::vector<bool>& wanted) = 0;
     // Reads the rows of the base level in order, until take(), which gets the channels of a row, returns false.

@@ -13,7 +13,6 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr float kVaries = 1.5f / 255.0f;
-constexpr float kRepeats = 8.5f / 255.0f;  // the same value in channels of 5 and 6 bits, and rebuilt z, differ by less
 
 }  // namespace
 
@@ -102,7 +101,7 @@ void OtherChannels::add_row(int j, const float* const (&channels)[4], const Vect
 std::vector<OtherChannel> OtherChannels::found() const {
     std::vector<OtherChannel> found;
     for (const Seen& seen : seen_) {
-        const bool repeats = std::min({seen.off_x, seen.off_y, seen.off_z}) <= kRepeats;
+        const bool repeats = std::min({seen.off_x, seen.off_y, seen.off_z}) <= kSameInBlocks;
         if (seen.greatest - seen.least > kVaries && !repeats)
             found.push_back({"RGBA"[seen.channel], seen.least, seen.greatest});
     }

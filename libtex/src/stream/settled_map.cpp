@@ -54,6 +54,7 @@ Result<bool> SettledMap::find_range() {
 Result<void> SettledMap::settle() {
     const Texture& head = map_->head();
     if (const Result<void> fit = check_channels(head); !fit) return map_->after_all_rows(fit.error().of(map_->path()));
+    if (!swizzle_) swizzle_ = map_->found_swizzle();
     if (!swizzle_) swizzle_ = known_swizzle(head, options_);
     if (!swizzle_) {
         const Result<Swizzle> found = find_layout();
