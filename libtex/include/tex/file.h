@@ -78,8 +78,8 @@ struct ReadOptions {
 // PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour chunks (gAMA, sRGB,
 // iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel names (R, G, B, A
 // come first, the others by name), or those of one layer; the data window; the first part of a multi-part file. Deep
-// data and subsampled channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says; x and y of a
-// normal in them stay as they are stored. `path` "-" reads standard input.
+// data and subsampled channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says, PNG is not;
+// x and y of a normal in them stay as they are stored. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all

@@ -63,7 +63,8 @@ constexpr Rule kRules[] = {
     {"N116", "turned-by-tag", file, warning, true, "The file asks its readers to turn or mirror the picture.",
      "Cameras and scanners state an orientation (TIFF, EXIF) instead of turning the texels. Some programs follow it, "
      "others show the texels as they are stored, so a map does not lie on the mesh as it did where it was painted. The "
-     "commands follow it, vectors stay as they are stored, and what they write has no orientation.",
+     "commands follow it, except in PNG, whose texels they read as they are stored. Vectors stay as they are stored, "
+     "and what the commands write has no orientation.",
      "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
 
     // -- the vectors ------------------------------------------------------------------------------------------

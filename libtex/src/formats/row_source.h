@@ -24,8 +24,13 @@
 
 namespace tex::inline v1 {
 
-// What a picture's orientation, which is not 1, means for it, as a sentence.
+// What a picture's orientation, which is not 1, means for it, as a sentence: of a picture that was turned accordingly,
+// and of one that was not.
 std::string orientation_text(int orientation);
+std::string ignored_orientation_text(int orientation);
+
+// Whether the remarks of a texture say that it was not turned.
+bool ignores_orientation(const Texture& head);
 
 // What Texture::trailing_bytes, which is not 0, means, as a sentence.
 std::string trailing_text(std::uint64_t bytes);
@@ -53,6 +58,8 @@ public:
     // Of heights: the strength that the file states (Texture::bumpiness_x).
     [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
     [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
+    // Whether the rows are turned as the orientation says; if not, the remark says so.
+    [[nodiscard]] bool is_turned() const { return is_turned_; }
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -119,9 +126,11 @@ protected:
     void describe_no_data(std::optional<float> value) { no_data_ = value; }
     void describe_stored(const StoredSamples& stored) { stored_ = stored; }
     void describe_remark(std::string remark) { remark_ = std::move(remark); }
-    void describe_orientation(int orientation) {
+    void describe_orientation(int orientation, bool is_turned = true) {
         orientation_ = orientation;
-        if (orientation != 1) remark_ = orientation_text(orientation);
+        is_turned_ = is_turned;
+        if (orientation != 1)
+            remark_ = is_turned ? orientation_text(orientation) : ignored_orientation_text(orientation);
     }
     void describe_numbers(double scale, double offset) {
         has_numbers_ = true;
@@ -142,6 +151,7 @@ private:
     bool has_numbers_ = false;
     std::string remark_;
     int orientation_ = 1;
+    bool is_turned_ = true;
     std::optional<Strength> strength_;
     double scale_ = 1.0, offset_ = 0.0;
 };
