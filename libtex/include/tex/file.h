@@ -238,9 +238,9 @@ TEX_API void remove_unfinished_files() noexcept;
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
 // and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. KTX2:
-// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported. KTX 1:
-// the formats of Format in OpenGL's numbers. Of arrays and cube maps, ReadOptions::layer is read; volumes are
-// unsupported.
+// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported, data
+// format descriptors that contradict the VkFormat bad_data. KTX 1: the formats of Format in OpenGL's numbers. Of arrays
+// and cube maps, ReadOptions::layer is read; volumes are unsupported.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
 // EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
 // is read as a picture: one level.

@@ -316,7 +316,7 @@ struct Texture {
     // not those of PNG, of which a remark says so. The vectors in them are as they are stored.
     int orientation = 1;
 
-    // Bytes after the last level, which were not read.
+    // Bytes beyond the levels, which were not read: after the last one, and in KTX2 between them, too.
     std::uint64_t trailing_bytes = 0;
 
     // Other faults that the reader ignored ("mip count says 3, the data end after 2"), one sentence each.

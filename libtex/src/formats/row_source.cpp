@@ -31,8 +31,8 @@ bool ignores_orientation(const Texture& head) {
 }
 
 std::string trailing_text(std::uint64_t bytes) {
-    return std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes") + " after the last level " +
-           (bytes == 1 ? "was" : "were") + " not read";
+    return std::to_string(bytes) + (bytes == 1 ? " byte beyond its levels was" : " bytes beyond its levels were") +
+           " not read";
 }
 
 void RowSource::describe_mark(std::string mark) {
