@@ -4,6 +4,7 @@
 
 #include <tex/format.h>
 
+#include "formats/row_source.h"
 #include "rows/unpack_rows.h"
 
 namespace tex::inline v1 {

@@ -23,9 +23,9 @@ struct KhrModel {
 
 // From khr_df.h.
 constexpr KhrModel kKhrModels[] = {
-    {kKhrBc1, "BC1"},        {kKhrBc2, "BC2"}, {kKhrBc3, "BC3"},     {kKhrBc4, "BC4"},   {kKhrBc5, "BC5"},
-    {kKhrBc6h, "BC6H"},      {kKhrBc7, "BC7"}, {160, "ETC1"},        {163, "ETC1S"},     {164, "PVRTC"},
-    {kKhrEtc2, "ETC2, EAC"}, {165, "PVRTC2"},  {kKhrUastc, "UASTC"}, {kKhrAstc, "ASTC"},
+    {kKhrBc1, "BC1"},          {kKhrBc2, "BC2"}, {kKhrBc3, "BC3"},     {kKhrBc4, "BC4"},   {kKhrBc5, "BC5"},
+    {kKhrBc6h, "BC6H"},        {kKhrBc7, "BC7"}, {160, "ETC1"},        {163, "ETC1S"},     {164, "PVRTC"},
+    {kKhrEtc2, "ETC2 or EAC"}, {165, "PVRTC2"},  {kKhrUastc, "UASTC"}, {kKhrAstc, "ASTC"},
 };
 
 std::string model_text(std::uint32_t model) {
