@@ -162,7 +162,7 @@ void add_texture(Module& module) {
                   [](const Texture& self) { return str_of(self.normal_encoding); })
         .property("srgb", "bool", "The file declares its colours as sRGB.",
                   [](const Texture& self) { return self.srgb; })
-        .property("trailing_bytes", "int", "Bytes after the last level, which were not read.",
+        .property("trailing_bytes", "int", "Bytes beyond the levels, which were not read.",
                   [](const Texture& self) { return self.trailing_bytes; })
         .property("remarks", "list[str]", "Other faults that the reader ignored, one sentence each.",
                   [](const Texture& self) { return strs_of(self.remarks); })

@@ -260,6 +260,39 @@ TEST_F(CheckNormals, AnEmptyListHasItsDocuments) {
     EXPECT_TRUE(scratch_.has("out.xml"));
 }
 
+// Each file contradicts itself in one place, and the commands read it nevertheless.
+TEST_F(CheckNormals, Ktx2ThatContradictsItselfIsReported) {
+    bake("good.ktx2", {"--format", "bc5"});
+    const std::string good = scratch_.read("good.ktx2");
+    const auto descriptor = static_cast<std::size_t>(static_cast<unsigned char>(good[48])) +
+                            256 * static_cast<std::size_t>(static_cast<unsigned char>(good[49]));
+    const struct {
+        std::size_t at;
+        char byte;
+        std::vector<std::string> rules;
+    } changes[] = {
+        {descriptor + 14, 2, {"N102", "N111"}},  // the transfer function
+        {52, 0, {"N102"}},                       // the size of the descriptor
+        {96, 1, {"N102"}},                       // the size of level 0 when uncompressed
+        {40, 1, {"N104"}},                       // the number of levels
+    };
+    for (const auto& change : changes) {
+        std::string changed = good;
+        changed[change.at] = change.byte;
+        scratch_.write("changed.ktx2", changed);
+        const Ran ran = check({"changed.ktx2"});
+        for (const std::string& rule : change.rules)
+            EXPECT_NE(ran.out.find(" " + rule + " "), std::string::npos) << change.at << ran.out;
+        EXPECT_EQ(ran.out.find("N101"), std::string::npos) << ran.out;
+    }
+    std::string eac = good;
+    eac[12] = static_cast<char>(155);
+    scratch_.write("eac.ktx2", eac);
+    const Ran ran = check({"eac.ktx2"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.out.find("says BC5, but VkFormat 155 is eac-rg11-unorm"), std::string::npos) << ran.out;
+}
+
 TEST_F(CheckNormals, ListsAndExplainsEveryRule) {
     const Ran list = check({"--list"});
     EXPECT_EQ(list.code, 0);

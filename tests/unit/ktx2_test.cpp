@@ -35,7 +35,7 @@ void set_field(Bytes& bytes, std::size_t offset, std::uint32_t value) {
 }
 
 constexpr std::size_t kVkFormatAt = 12, kWidthAt = 20, kHeightAt = 24, kDepthAt = 28, kLayersAt = 32, kFacesAt = 36,
-                      kLevelsAt = 40, kSchemeAt = 44, kEntriesAt = 56, kLevel0At = 80;
+                      kLevelsAt = 40, kSchemeAt = 44, kDescriptorAt = 48, kEntriesAt = 56, kLevel0At = 80;
 
 // Replaces the value of `key` with `value`, padded to the length of the old one.
 void set_value(Bytes& file, const std::string& key, const std::string& value) {
@@ -154,8 +154,9 @@ TEST(Ktx2, TellsUnsupportedFromDamaged) {
         return texture ? std::string("read") : std::string(name_of(kErrorCodeNames, texture.error().code));
     };
     EXPECT_EQ(code_with(kWidthAt, 8), "read");
-    EXPECT_EQ(code_with(kVkFormatAt, 0), "unsupported");    // Basis
-    EXPECT_EQ(code_with(kVkFormatAt, 145), "read");         // BC7
+    EXPECT_EQ(code_with(kVkFormatAt, 0), "unsupported");    // undefined
+    EXPECT_EQ(code_with(kVkFormatAt, 138), "read");         // BC3 as sRGB
+    EXPECT_EQ(code_with(kVkFormatAt, 145), "bad-data");     // BC7, but the descriptor says BC3
     EXPECT_EQ(code_with(kVkFormatAt, 147), "unsupported");  // ETC2
     EXPECT_EQ(code_with(kSchemeAt, 1), "unsupported");      // BasisLZ
     EXPECT_EQ(code_with(kFacesAt, 6), "unsupported");       // no face is chosen
@@ -184,7 +185,139 @@ TEST(Ktx2, TellsUastcWithoutAlpha) {
     for (const int channel : {0, 4}) EXPECT_EQ(reason(166, channel), kUastcWithoutAlpha);  // RGB, RRR
     for (const int channel : {3, 5})                                                       // RGBA, RRRG
         EXPECT_NE(reason(166, channel).find("ktx transcode"), std::string::npos);
-    EXPECT_NE(reason(132, 0).find("ktx transcode"), std::string::npos);
+    EXPECT_THAT(reason(163, 0), HasSubstr("ETC1S is not supported; \"ktx transcode"));
+    EXPECT_EQ(reason(132, 0),
+              "its data format descriptor says BC5, but VkFormat is 0, undefined; export the texture with a VkFormat");
+    EXPECT_THAT(reason(99, 0), HasSubstr("colour model 99"));
+    EXPECT_THAT(reason(0, 0), HasSubstr("neither VkFormat nor a data format descriptor"));
+}
+
+// A file whose descriptor was changed; `at` counts from the first byte of the descriptor.
+class Ktx2Descriptors : public testing::Test {
+protected:
+    explicit Ktx2Descriptors(Format format = Format::bc5_unorm) : file_(encode(patterned_texture(format, {8, 8}, 1))) {}
+    std::byte& at(std::size_t offset) { return file_[field(file_, kDescriptorAt) + offset]; }
+    [[nodiscard]] std::string refusal() const {
+        const auto read = decode_bytes(file_);
+        if (read) return "none";
+        EXPECT_EQ(read.error().code, ErrorCode::bad_data);
+        return read.error().reason;
+    }
+    [[nodiscard]] std::vector<std::string> remarks() const {
+        const auto read = decode_bytes(file_);
+        return read ? read->remarks : std::vector<std::string>{read.error().message()};
+    }
+    void use(Format format) { file_ = encode(patterned_texture(format, {8, 8}, 1)); }
+
+    static constexpr std::size_t kModel = 12, kPrimaries = 13, kTransfer = 14, kFlags = 15, kEdges = 16, kBytes = 20;
+    Bytes file_;
+};
+
+TEST_F(Ktx2Descriptors, AreRefusedIfTheyContradictTheVkFormat) {
+    set_field(file_, kVkFormatAt, 155);
+    EXPECT_EQ(refusal(),
+              "its data format descriptor says BC5, but VkFormat 155 is eac-rg11-unorm; export the texture again");
+    use(Format::astc_6x6_unorm);
+    at(kEdges) = at(kEdges + 1) = std::byte{3};
+    EXPECT_THAT(refusal(), HasSubstr("blocks of 4x4 texels, but VkFormat 165 is astc-6x6-unorm"));
+    use(Format::bc5_unorm);
+    at(kBytes) = std::byte{8};
+    EXPECT_THAT(refusal(), HasSubstr("8 bytes for each block, but VkFormat 141 is bc5-unorm, with 16"));
+    use(Format::rgba8_unorm);
+    at(kBytes) = std::byte{3};
+    EXPECT_THAT(refusal(), HasSubstr("3 bytes for each texel, but VkFormat 37 is rgba8-unorm, with 4"));
+    use(Format::rgba8_unorm);
+    at(kModel) = std::byte{134};
+    EXPECT_THAT(refusal(), HasSubstr("says BC7, but VkFormat 37 is rgba8-unorm"));
+}
+
+// Other writers leave fields open, and get some wrong that say nothing about where texels are.
+TEST_F(Ktx2Descriptors, MayLeaveFieldsOpen) {
+    for (const Format format : {Format::bc5_unorm, Format::rgba8_unorm}) {
+        use(format);
+        at(kBytes) = std::byte{0};
+        at(kPrimaries) = std::byte{1};
+        at(kTransfer) = std::byte{0};
+        at(kFlags) = std::byte{1};
+        at(30) = std::byte{200};  // the length of a sample
+        EXPECT_THAT(remarks(), testing::IsEmpty());
+        at(kModel) = std::byte{0};
+        at(kEdges) = at(kEdges + 1) = std::byte{0};
+        EXPECT_THAT(remarks(), testing::IsEmpty());
+    }
+    at(kModel) = std::byte{6};  // XYZW: texels all the same
+    EXPECT_THAT(remarks(), testing::IsEmpty());
+}
+
+TEST_F(Ktx2Descriptors, ThatAreMissingOrDamagedAreTold) {
+    const Bytes whole = file_;
+    set_field(file_, kDescriptorAt + 4, 0);
+    EXPECT_THAT(remarks(), testing::ElementsAre("there is no data format descriptor"));
+    EXPECT_EQ(decode_bytes(file_)->trailing_bytes, 0u);
+    for (const std::uint32_t offset : {5u, 0xfffffff0u}) {
+        file_ = whole;
+        set_field(file_, kDescriptorAt, offset);
+        EXPECT_THAT(remarks(), testing::ElementsAre("the data format descriptor is damaged and was not read"));
+    }
+    for (const std::uint32_t bytes : {1u, 27u, 44u, 0xffffffffu}) {
+        file_ = whole;
+        set_field(file_, kDescriptorAt + 4, bytes);
+        EXPECT_THAT(remarks(), testing::ElementsAre("the data format descriptor is damaged and was not read"));
+    }
+}
+
+TEST_F(Ktx2Descriptors, ThatDisagreeAboutSrgbAreTold) {
+    at(kTransfer) = std::byte{2};
+    auto read = decode_bytes(file_);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->srgb);
+    EXPECT_THAT(read->remarks, testing::ElementsAre("the data format descriptor says sRGB, but VkFormat 141 does not"));
+    use(Format::rgba8_unorm);
+    set_field(file_, kVkFormatAt, 43);
+    read = decode_bytes(file_);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->srgb);
+    EXPECT_THAT(read->remarks,
+                testing::ElementsAre("VkFormat 43 says sRGB, but the data format descriptor says linear"));
+    at(kTransfer) = std::byte{2};
+    EXPECT_THAT(remarks(), testing::IsEmpty());
+}
+
+TEST(Ktx2, TellsASecondSizeThatDiffers) {
+    Bytes file = encode(patterned_texture(Format::bc5_unorm, {16, 16}, 3));
+    set_field(file, kLevel0At + 24 + 16, 1);
+    EXPECT_THAT(decode_bytes(file)->remarks,
+                testing::ElementsAre("level 1 claims 1 bytes when uncompressed; without supercompression, it has 64"));
+}
+
+TEST(Ktx2, CountsBytesBeyondItsLevels) {
+    const Bytes whole = encode(patterned_texture(Format::bc5_unorm, {16, 16}, 4));
+    EXPECT_EQ(decode_bytes(whole)->trailing_bytes, 0u);
+    Bytes file = whole;
+    set_field(file, kLevelsAt, 1);
+    const std::uint64_t before =
+        load_u64(file.data() + kLevel0At) - field(file, kEntriesAt) - field(file, kEntriesAt + 4);
+    EXPECT_EQ(decode_bytes(file)->trailing_bytes, before + 3 * 24);  // three levels, and their entries in the index
+    file = whole;
+    file.resize(whole.size() + 15, std::byte{1});
+    EXPECT_EQ(decode_bytes(file)->trailing_bytes, 0u);
+    file.resize(whole.size() + 16, std::byte{1});
+    EXPECT_EQ(decode_bytes(file)->trailing_bytes, 16u);
+    file.resize(whole.size() + 100000, std::byte{0});
+    EXPECT_EQ(decode_bytes(file)->trailing_bytes, 100000u);
+}
+
+// Levels that begin at pages are padded, as those of some writers.
+TEST(Ktx2, TakesZerosBetweenLevelsForPadding) {
+    Bytes file = encode(patterned_texture(Format::bc5_unorm, {16, 16}, 1));
+    constexpr std::size_t kPage = 4096;
+    const auto level = static_cast<std::ptrdiff_t>(load_u64(file.data() + kLevel0At));
+    file.insert(file.begin() + level, kPage, std::byte{0});
+    set_field(file, kLevel0At, static_cast<std::uint32_t>(level) + kPage);
+    const auto read = decode_bytes(file);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->trailing_bytes, 0u);
+    EXPECT_THAT(read->remarks, testing::IsEmpty());
 }
 
 TEST(Ktx2, RejectsEveryTruncation) {

@@ -2,14 +2,21 @@
 
 #include "formats/png/png.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <tex/check.h>
 
 #include <csetjmp>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
+
+#include "formats/exif.h"
+#include "formats/png/png_chunk.h"
+#include "unit/exif_data.h"
 
 namespace tex {
 namespace {
@@ -158,6 +165,56 @@ TEST(Png, ReadsEveryKindExactly) {
             }
         }
     }
+}
+
+// The file with a chunk of EXIF data after its header, or before its end.
+Bytes with_exif(Bytes file, std::string_view exif, bool at_end = false) {
+    constexpr std::ptrdiff_t kAfterHeader = 33, kEndChunk = 12;
+    Bytes chunk;
+    const std::size_t begun = begin_png_chunk(chunk, "eXIf");
+    for (const char c : exif) chunk.push_back(static_cast<std::byte>(c));
+    end_png_chunk(chunk, begun);
+    file.insert(at_end ? file.end() - kEndChunk : file.begin() + kAfterHeader, chunk.begin(), chunk.end());
+    return file;
+}
+
+TEST(Png, TellsItsOrientationAndIsNotTurned) {
+    const std::string wanted =
+        "the picture was not turned or mirrored as its orientation (6) says, because PNG is read as it is stored; "
+        "turn it in an editor, or remove the orientation";
+    for (const bool interlaced : {false, true}) {
+        const Bytes plain = make_png({PNG_COLOR_TYPE_RGB, 8, interlaced, false});
+        const Result<Image> stored = read(plain);
+        ASSERT_TRUE(stored);
+        for (const std::string& mark : {std::string(), std::string(kExifMark)}) {
+            const Result<Image> image = read(with_exif(plain, mark + exif_data(6, mark.empty())));
+            ASSERT_TRUE(image) << image.error().message();
+            EXPECT_EQ(image->remark, wanted);
+            EXPECT_EQ(read(with_exif(plain, mark + exif_data(6, false), true))->remark, wanted);
+            ASSERT_EQ(image->extent(), stored->extent());
+            for (int j = 0; j < kHeight; ++j) EXPECT_EQ(image->planes[0].at(3, j), stored->planes[0].at(3, j));
+        }
+        for (const std::string& silent :
+             {exif_data(1, false), exif_data(9, true), exif_data(0, true), std::string("II")})
+            EXPECT_EQ(read(with_exif(plain, silent))->remark, "");
+    }
+}
+
+TEST(Png, OrientationsAreRemarksOfTexturesAndFindings) {
+    const Bytes file = with_exif(make_png({PNG_COLOR_TYPE_RGB, 8, false, false}), exif_data(6, false));
+    const Result<Texture> texture = read_texture(file, "turned.png");
+    ASSERT_TRUE(texture);
+    EXPECT_EQ(texture->orientation, 6);
+    ASSERT_EQ(texture->remarks.size(), 1u);
+    const auto report = check("turned.png", *texture);
+    ASSERT_TRUE(report);
+    std::vector<std::string> found;
+    for (const Finding& finding : report->findings) {
+        if (finding.rule->family == RuleFamily::file) found.push_back(std::string(finding.rule->id) + finding.message);
+    }
+    EXPECT_THAT(found, testing::Contains(
+                           testing::AllOf(testing::StartsWith("N116"), testing::HasSubstr("read as they are stored"))));
+    EXPECT_THAT(found, testing::Not(testing::Contains(testing::StartsWith("N102"))));
 }
 
 TEST(Png, EveryTruncationIsDamage) {

@@ -10,6 +10,9 @@
 
 #include <cmath>
 #include <cstring>
+#include <string>
+
+#include "unit/exif_data.h"
 
 namespace tex {
 namespace {
@@ -117,6 +120,19 @@ TEST(ReaderEncode, JpegStaysClose) {
             EXPECT_NEAR(image->planes[1].at(i, j) * 255.0f, 2 * j + 64, 6);
         }
     }
+}
+
+TEST(ReaderEncode, JpegIsTurnedAsItsExifSays) {
+    Result<Bytes> bytes = encode_with_reader(texture_of(Format::rgb8_unorm, {64, 32}), Container::jpeg, quick_write());
+    ASSERT_TRUE(bytes) << bytes.error().message();
+    const std::string exif = std::string("Exif\0\0", 6) + exif_data(6, true);
+    const std::string segment = std::string("\xff\xe1\0", 3) + static_cast<char>(exif.size() + 2) + exif;
+    const auto* const added = reinterpret_cast<const std::byte*>(segment.data());
+    bytes->insert(bytes->begin() + 2, added, added + segment.size());
+    const Result<Image> image = read_encoded(*bytes);
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(image->extent(), (Extent{32, 64}));
+    EXPECT_EQ(image->remark, "the picture was turned or mirrored, as its orientation (6) says");
 }
 
 // Codes that were damaged leave bytes over before the end of the image. Padding does not count.

@@ -254,6 +254,8 @@ TEST(Supercompression, OthersAreUnsupported) {
     expect_refused(file, ErrorCode::unsupported, "supercompression scheme 4 is not supported");
     set(file, kSchemeAt, 2, 4);
     set(file, kVkFormatAt, 0, 4);
+    set(file, load_u32(file.data() + kDescriptorAt) + 12, 166, 1);  // KHR_DF_MODEL_UASTC,
+    set(file, load_u32(file.data() + kDescriptorAt) + 31, 3, 1);    // of RGB and A
     expect_refused(file, ErrorCode::unsupported, "UASTC is not supported; \"ktx transcode --target bc5\"");
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "decoders.h"
+#include "formats/exif.h"
 #include "jpeg.h"
 #include "open_input.h"
 
@@ -58,35 +59,13 @@ void judge_warning(j_common_ptr codec, int level) {
 
 void be_silent(j_common_ptr /*codec*/) {}
 
-// The orientation in the first directory of EXIF data; 1 if there is none.
-std::uint32_t exif_orientation(std::string_view exif) {
-    constexpr std::string_view kMark("Exif\0\0", 6);
-    if (!exif.starts_with(kMark)) return 1;
-    exif.remove_prefix(kMark.size());
-    const bool big_endian = exif.starts_with("MM");
-    const auto number = [&](std::size_t at, std::size_t count) {
-        std::uint64_t value = 0;
-        if (at > exif.size() || count > exif.size() - at) return value;
-        for (std::size_t k = 0; k < count; ++k)
-            value = value << 8 | static_cast<unsigned char>(exif[big_endian ? at + k : at + count - 1 - k]);
-        return value;
-    };
-    constexpr std::uint64_t kTag = 0x0112, kShort = 3;
-    const std::size_t directory = number(4, 4);
-    for (std::size_t k = 0; k < number(directory, 2); ++k) {
-        const std::size_t entry = directory + 2 + 12 * k;
-        if (number(entry, 2) == kTag && number(entry + 2, 2) == kShort)
-            return static_cast<std::uint32_t>(number(entry + 8, 2));
-    }
-    return 1;
-}
-
 void read_markers(const jpeg_decompress_struct& codec, ReaderHeader& header) {
     for (const jpeg_marker_struct* marker = codec.marker_list; marker != nullptr; marker = marker->next) {
         const std::string_view data(reinterpret_cast<const char*>(marker->data), marker->data_length);
         if (marker->marker == JPEG_COM && header.description[0] == '\0')
             data.copy(header.description, sizeof header.description - 1);
-        if (marker->marker == JPEG_APP0 + 1 && header.orientation == 1) header.orientation = exif_orientation(data);
+        if (marker->marker == JPEG_APP0 + 1 && header.orientation == 1 && data.starts_with(kExifMark))
+            header.orientation = exif_orientation(data.substr(kExifMark.size()));
     }
 }
 

@@ -78,8 +78,8 @@ struct ReadOptions {
 // PNG: 1 to 16 bits, grey, RGB, alpha, palette (expanded), transparency (as A), interlaced; colour chunks (gAMA, sRGB,
 // iCCP, sBIT) change nothing. EXR: half, float and uint, scanline and tiled, mip-mapped, any channel names (R, G, B, A
 // come first, the others by name), or those of one layer; the data window; the first part of a multi-part file. Deep
-// data and subsampled channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says; x and y of a
-// normal in them stay as they are stored. `path` "-" reads standard input.
+// data and subsampled channels are unsupported. TIFF and JPEG are turned as their orientation (EXIF) says, PNG is not;
+// x and y of a normal in them stay as they are stored. `path` "-" reads standard input.
 //
 // Errors: io           cannot be opened or read; is a directory; the reader program cannot be started
 //         bad_data     empty, truncated, damaged; not a picture at all
@@ -238,9 +238,9 @@ TEX_API void remove_unfinished_files() noexcept;
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
 // and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. KTX2:
-// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported. KTX 1:
-// the formats of Format in OpenGL's numbers. Of arrays and cube maps, ReadOptions::layer is read; volumes are
-// unsupported.
+// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported, data
+// format descriptors that contradict the VkFormat bad_data. KTX 1: the formats of Format in OpenGL's numbers. Of arrays
+// and cube maps, ReadOptions::layer is read; volumes are unsupported.
 // ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
 // EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
 // is read as a picture: one level.

@@ -15,16 +15,16 @@ constexpr Rule kRules[] = {
     {"N101", "unreadable", file, error, true, "The file cannot be decoded.",
      "It is damaged, truncated, empty or of a kind that is not supported. Nothing else can be said about it.", "", ""},
     {"N102", "header-disagrees", file, warning, true, "The header contradicts the data, or leaves a choice.",
-     "A size, count or flag in the header is not what the data are, or the file holds more than one picture that could "
-     "be meant. Other readers refuse the file or read other texels.",
+     "A size, count or flag in the header contradicts the data or another part of the header, or the file holds more "
+     "than one picture that could be meant. Other readers refuse the file or read other texels.",
      "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N103", "mips-incomplete", file, warning, true, "The mip chain ends before 1x1.",
      "A texture with some levels but not all is incomplete in OpenGL and samples as black there unless the application "
      "limits the levels.",
      "mip-normals FILE --keep-length --format SAME -o FIXED", ""},
-    {"N104", "trailing-bytes", file, warning, true, "Bytes follow the last level.",
-     "They are not part of the texture: an appended file, a second surface that the header does not mention, or an "
-     "exporter's wrong size.",
+    {"N104", "trailing-bytes", file, warning, true, "The file has bytes beyond its levels.",
+     "They are not part of the texture: an appended file, levels or a second surface that the header does not mention, "
+     "or an exporter's wrong size.",
      "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
     {"N105", "not-power-of-two", file, error, false, "A side is not a power of two.",
      "Old hardware and some engines cannot mip-map or repeat such textures. Off unless pow2 is required.", "", ""},
@@ -63,7 +63,8 @@ constexpr Rule kRules[] = {
     {"N116", "turned-by-tag", file, warning, true, "The file asks its readers to turn or mirror the picture.",
      "Cameras and scanners state an orientation (TIFF, EXIF) instead of turning the texels. Some programs follow it, "
      "others show the texels as they are stored, so a map does not lie on the mesh as it did where it was painted. The "
-     "commands follow it, vectors stay as they are stored, and what they write has no orientation.",
+     "commands follow it, except in PNG, whose texels they read as they are stored. Vectors stay as they are stored, "
+     "and what the commands write has no orientation.",
      "pack-normals FILE --keep-length --format SAME -o FIXED", ""},
 
     // -- the vectors ------------------------------------------------------------------------------------------

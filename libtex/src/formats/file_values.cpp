@@ -46,7 +46,7 @@ public:
         describe_stored(stored);
         describe_numbers(scale_, offset_);
         describe_remark(rows_->remark());
-        describe_orientation(rows_->orientation());
+        describe_orientation(rows_->orientation(), rows_->is_turned());
         if (std::optional<float> value = rows_->no_data()) {
             number(&*value, 1);
             describe_no_data(value);

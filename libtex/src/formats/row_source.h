@@ -27,8 +27,13 @@ namespace tex::inline v1 {
 inline constexpr const char* kMultipliedText =
     "R, G and B are multiplied by alpha, as the file says, and are read as they are stored";
 
-// What a picture's orientation, which is not 1, means for it, as a sentence.
+// What a picture's orientation, which is not 1, means for it, as a sentence: of a picture that was turned accordingly,
+// and of one that was not.
 std::string orientation_text(int orientation);
+std::string ignored_orientation_text(int orientation);
+
+// Whether the remarks of a texture say that it was not turned.
+bool ignores_orientation(const Texture& head);
 
 // What Texture::trailing_bytes, which is not 0, means, as a sentence.
 std::string trailing_text(std::uint64_t bytes);
@@ -58,6 +63,8 @@ public:
     [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
     // The file says that colours were multiplied by alpha. They are read as they are stored.
     [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
+    // Whether the rows are turned as the orientation says; if not, the remark says so.
+    [[nodiscard]] bool is_turned() const { return is_turned_; }
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -128,9 +135,11 @@ protected:
         is_multiplied_ = true;
         remark_ = kMultipliedText;
     }
-    void describe_orientation(int orientation) {
+    void describe_orientation(int orientation, bool is_turned = true) {
         orientation_ = orientation;
-        if (orientation != 1) remark_ = orientation_text(orientation);
+        is_turned_ = is_turned;
+        if (orientation != 1)
+            remark_ = is_turned ? orientation_text(orientation) : ignored_orientation_text(orientation);
     }
     void describe_numbers(double scale, double offset) {
         has_numbers_ = true;
@@ -152,6 +161,7 @@ private:
     std::string remark_;
     int orientation_ = 1;
     bool is_multiplied_ = false;
+    bool is_turned_ = true;
     std::optional<Strength> strength_;
     double scale_ = 1.0, offset_ = 0.0;
 };

@@ -4,6 +4,7 @@
 
 #include <tex/format.h>
 
+#include "formats/row_source.h"
 #include "rows/unpack_rows.h"
 
 namespace tex::inline v1 {
@@ -47,7 +48,7 @@ SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const Source
     info.srgb = head.srgb;
     info.remarks = head.remarks;
     if (head.trailing_bytes > 0) info.remarks.push_back(trailing_text(head.trailing_bytes));
-    if (head.orientation != 1)
+    if (head.orientation != 1 && !ignores_orientation(head))
         info.remarks.push_back(orientation_text(head.orientation) + "; vectors stay as they are stored");
     return info;
 }

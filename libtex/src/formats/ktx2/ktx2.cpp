@@ -17,6 +17,8 @@
 #include "formats/ktx2/key_values.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/ktx2/level_inflater.h"
+#include "formats/ktx2/read_descriptor.h"
+#include "formats/ktx2/unclaimed_bytes.h"
 #include "formats/layers.h"
 #include "formats/normal_mark.h"
 #include "formats/size_limits.h"
@@ -83,7 +85,8 @@ std::size_t round_up(std::size_t value, std::size_t alignment) {
 
 struct Ktx2Header {
     std::uint32_t vk_format, width, height, depth, layers, faces, levels, supercompression;
-    std::uint32_t key_values_offset, key_values_bytes;
+    std::uint32_t descriptor_offset, descriptor_bytes, key_values_offset, key_values_bytes;
+    std::uint64_t global_offset, global_bytes;  // of the data that levels share under supercompression
 };
 
 constexpr std::uint32_t kFaces = 6;
@@ -101,8 +104,8 @@ std::optional<Supercompression> find_scheme(std::uint32_t scheme) {
 
 Ktx2Header parse_header(const std::byte* data) {
     const auto field = [&](std::size_t offset) { return load_u32(data + offset); };
-    return {field(12), field(20), field(24), field(28), field(32),
-            field(36), field(40), field(44), field(56), field(60)};
+    return {field(12), field(20), field(24), field(28), field(32), field(36),           field(40),
+            field(44), field(48), field(52), field(56), field(60), load_u64(data + 64), load_u64(data + 72)};
 }
 
 Result<Extent> check_header(const Ktx2Header& header, const std::string& name, const ReadOptions& options) {
@@ -118,23 +121,16 @@ Result<Extent> check_header(const Ktx2Header& header, const std::string& name, c
     return claimed_extent(name, header.width, header.height, options);
 }
 
-// Files without a VkFormat hold UASTC, and their descriptor says which channels it has.
-Error uastc_error(const FetchBytes& fetch, std::size_t size, const std::string& name) {
-    constexpr std::size_t kDescriptorOffset = 48, kModel = 12, kFirstChannel = 31, kBytes = 32;
-    constexpr unsigned kUastc = 166, kRgb = 0, kRrr = 4;  // KHR_DF_MODEL_UASTC, KHR_DF_CHANNEL_UASTC_...
-    if (const auto field = fetch(kDescriptorOffset, 4)) {
-        const std::size_t offset = load_u32(field->data());
-        if (offset <= size && size - offset >= kBytes) {
-            const auto bytes = fetch(offset, kBytes);
-            if (!bytes) return bytes.error();
-            const auto model = std::to_integer<unsigned>((*bytes)[kModel]);
-            const auto channel = std::to_integer<unsigned>((*bytes)[kFirstChannel]) & 15u;
-            if (model == kUastc && (channel == kRgb || channel == kRrr))
-                return Error{ErrorCode::unsupported, name, std::string(kUastcWithoutAlpha),
-                             ErrorDetail::uastc_without_alpha};
-        }
-    }
-    return unsupported(name, "UASTC is not supported; \"ktx transcode --target bc5\" makes a file that is");
+// What the descriptor says about the format that the VkFormat names. Errors: bad_data.
+Result<void> apply_descriptor(const Ktx2Descriptor& descriptor, std::uint32_t vk, Texture& texture) {
+    if (Result<void> agrees = check_descriptor(descriptor, vk, texture.format); !agrees) return agrees;
+    const std::string vk_text = "VkFormat " + std::to_string(vk);
+    if (descriptor.states_srgb() && !texture.srgb)
+        texture.remarks.push_back("the data format descriptor says sRGB, but " + vk_text + " does not");
+    if (descriptor.states_linear() && texture.srgb)
+        texture.remarks.push_back(vk_text + " says sRGB, but the data format descriptor says linear");
+    texture.srgb = texture.srgb || descriptor.states_srgb();
+    return {};
 }
 
 // KTXswizzle names the stored channel that a shader reads as R, G, B and A: "ag01" means that A holds x and G holds y.
@@ -214,6 +210,33 @@ Result<StoredTexture::Level> place_of(const std::byte* entry, std::size_t size, 
     return StoredTexture::Level{extent, offset, bytes, decoded, before};
 }
 
+// Without supercompression, a level has one size, which its entry in the level index states twice.
+void remark_on_sizes(const std::vector<std::byte>& index, std::size_t levels, Texture& texture) {
+    for (std::size_t k = 0; k < levels; ++k) {
+        const std::uint64_t bytes = load_u64(index.data() + k * kLevelIndexBytes + 8);
+        const std::uint64_t uncompressed = load_u64(index.data() + k * kLevelIndexBytes + 16);
+        if (bytes == uncompressed) continue;
+        texture.remarks.push_back("level " + std::to_string(k) + " claims " + std::to_string(uncompressed) +
+                                  " bytes when uncompressed; without supercompression, it has " +
+                                  std::to_string(bytes));
+        return;
+    }
+}
+
+// What the header does not name: more levels than it counts, an appended file. A remark speaks of a descriptor that was
+// not found, which is before the key/value data.
+Result<std::uint64_t> unread_bytes(const FetchBytes& fetch, std::size_t size, const Ktx2Header& header,
+                                   const std::vector<std::byte>& index, bool has_descriptor) {
+    std::vector<ClaimedBytes> claimed = {{0, kHeaderBytes + index.size()},
+                                         {0, has_descriptor ? 0 : header.key_values_offset},
+                                         {header.descriptor_offset, header.descriptor_bytes},
+                                         {header.key_values_offset, header.key_values_bytes},
+                                         {header.global_offset, header.global_bytes}};
+    for (std::size_t at = 0; at < index.size(); at += kLevelIndexBytes)
+        claimed.push_back({load_u64(index.data() + at), load_u64(index.data() + at + 8)});
+    return unclaimed_bytes(fetch, size, std::move(claimed));
+}
+
 }  // namespace
 
 FileLayout ktx2_layout(const TextureHead& head) {
@@ -275,8 +298,14 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const bool is_cube = header.faces == kFaces;
     const LayerCount count{std::uint64_t{std::max<std::uint32_t>(header.layers, 1)} * header.faces, is_cube};
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
-    if (!row && header.vk_format == 0) return uastc_error(fetch, size, name);
-    if (!row) return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
+    if (!row && header.vk_format != 0)
+        return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
+    StoredTexture stored;
+    Texture& texture = stored.head;
+    const Result<std::optional<Ktx2Descriptor>> descriptor =
+        read_descriptor(fetch, size, header.descriptor_offset, header.descriptor_bytes, texture.remarks);
+    if (!descriptor) return descriptor.error();
+    if (!row) return no_vk_format(*descriptor).of(name);
     const Result<std::uint64_t> layer = chosen_layer(count, name, options);
     if (!layer) return layer.error();
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
@@ -291,14 +320,16 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Result<std::vector<std::byte>> index = fetch(kHeaderBytes, levels * kLevelIndexBytes);
     if (!index) return index.error();
 
-    StoredTexture stored;
     stored.bgr = row->bgr;
     stored.supercompression = *find_scheme(header.supercompression);
-    Texture& texture = stored.head;
     texture.format = row->format;
     texture.swizzle = likely_swizzle(row->format);
     texture.x_in_grey = true;
     texture.srgb = row->srgb;
+    if (*descriptor) {
+        const Result<void> agrees = apply_descriptor(**descriptor, row->vk, texture);
+        if (!agrees) return agrees.error().of(name);
+    }
     const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
     if (!upwards) return upwards.error();
     stored.upwards = *upwards;
@@ -312,6 +343,10 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
         if (!place) return place.error();
         stored.levels.push_back(*place);
     }
+    if (stored.supercompression == Supercompression::none) remark_on_sizes(*index, levels, texture);
+    const Result<std::uint64_t> unread = unread_bytes(fetch, size, header, *index, descriptor->has_value());
+    if (!unread) return unread.error();
+    texture.trailing_bytes = *unread;
     return stored;
 }
 

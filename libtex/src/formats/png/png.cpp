@@ -96,6 +96,7 @@ Result<void> PngRows::open(const ReadOptions& options) {
              static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels * bits / 8));
     describe_samples(SampleKind::unorm, kind.is_palette ? 8 : kind.bit_depth);
     describe_mark(libpng_->normal_mark());
+    describe_orientation(libpng_->orientation(), libpng_->orientation() == 1);
     if (is_interlaced_ || only_libpng_) return libpng_->start();
     plain_ = std::make_unique<PlainPngRows>(libpng_->input(), libpng_->first_length(), extent, kind);
     return {};

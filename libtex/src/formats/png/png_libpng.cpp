@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "formats/normal_mark.h"
+#include "formats/png/png_exif.h"
 #include "formats/size_limits.h"
 #include "threads/no_throw.h"
 
@@ -19,6 +20,7 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr png_byte kTextChunk[] = "tEXt";
+constexpr png_byte kExifChunk[] = "eXIf";
 
 }  // namespace
 
@@ -45,9 +47,11 @@ bool LibpngReader::read_header() {
     if (info == nullptr) png_error(png, "out of memory");
     png_set_read_fn(png, this, on_read);
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
-    // Only IHDR, PLTE, tRNS, IDAT, IEND and the text before the texels have an effect; other chunks are not parsed.
+    // Only IHDR, PLTE, tRNS, IDAT, IEND, and the text and the EXIF data before the texels have an effect; other chunks
+    // are not parsed. libpng keeps the bytes of the EXIF data.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, kTextChunk, 1);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, kExifChunk, 1);
     // libtex checks the limits itself, with its own reasons, after the header has been checked.
     png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     constexpr png_alloc_size_t kOwn = 1 << 20;  // libpng's own structures
@@ -55,6 +59,7 @@ bool LibpngReader::read_header() {
     png_read_info(png, info);
     most_bytes = std::numeric_limits<png_alloc_size_t>::max();
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kTextChunk, 1);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, kExifChunk, 1);
     width_ = png_get_image_width(png, info);
     height_ = png_get_image_height(png, info);
     file_row_bytes_ = static_cast<std::int64_t>(png_get_rowbytes(png, info));
@@ -91,6 +96,9 @@ void LibpngReader::describe() {
     for (int k = count; k-- > 0;) {
         if (texts[k].key == kNormalKey) normal_mark_ = {texts[k].text, texts[k].text_length};
     }
+    png_unknown_chunkp kept = nullptr;
+    if (png_get_unknown_chunks(png, info, &kept) > 0)
+        orientation_ = png_orientation({reinterpret_cast<const char*>(kept[0].data), kept[0].size});
 }
 
 Result<void> LibpngReader::open(const ReadOptions& options) {
@@ -103,6 +111,11 @@ Result<void> LibpngReader::open(const ReadOptions& options) {
     if (!extent) return extent.error();
     extent_ = *extent;
     describe();
+    if (orientation_ == 1) {
+        const Result<int> later = png_orientation_at_end(file_);
+        if (!later) return later.error();
+        orientation_ = *later;
+    }
     return {};
 }
 

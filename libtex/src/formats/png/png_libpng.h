@@ -34,6 +34,7 @@ public:
     [[nodiscard]] const PngKind& kind() const { return kind_; }
     [[nodiscard]] bool is_interlaced() const { return is_interlaced_; }
     [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
+    [[nodiscard]] int orientation() const { return orientation_; }  // 1 to 8, as eXIf says
 
     // The number of bytes in the first IDAT chunk, which come next in the input. From here on, either the caller reads
     // the input, or the functions below do.
@@ -67,6 +68,7 @@ private:
     bool is_interlaced_ = false;
     int passes_ = 1;
     std::string normal_mark_;
+    int orientation_ = 1;
 };
 
 }  // namespace tex::inline v1
