@@ -89,8 +89,9 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         hn::Max(hn::Sub(shape.greatest[0], shape.least[0]), hn::Sub(shape.greatest[1], shape.least[1]));
     hn::Store(widest, d, guesses.widest);
     const auto is_narrow = hn::Le(widest, AstcNumber(kAstcNarrow));
-    alignas(64) float rows[2 * 64 * kAstcLanes];
+    alignas(64) float folded[2 * 64 * kAstcLanes], rows[kAstcPairs * 3 * kAstcLanes];
     const float* const channels[2] = {shape.v[0], shape.v[1]};
+    FoldTexels<2>(block, channels, folded);
     FloatVec coarse[kAstcCoarseLevels];
     if (guide.measures_coarse) MeasureCoarse(shape, block.width * block.height, coarse);
     int width = 0;
@@ -98,7 +99,7 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         // All energies inside the space of the grid; the rest is error.
         FloatVec in[3] = {shape.xx, shape.yy, shape.xy};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows<2>(guide, grid.extent.width, channels, rows);
+            if (grid.extent.width != width) ProjectRows<2>(guide, grid.extent.width, folded, rows);
             width = grid.extent.width;
             ProjectColumns<2>(guide, grid.extent, rows, in);
         }

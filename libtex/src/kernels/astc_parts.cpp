@@ -217,12 +217,19 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         }
     }
     const FloatVec energies = hn::Add(energy[1], energy[2]);
-    alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[3 * 64 * kAstcLanes];
+    alignas(64) float folded[2 * 64 * kAstcLanes], line_folded[3 * 64 * kAstcLanes];
+    alignas(64) float rows[kAstcPairs * 3 * kAstcLanes], line_rows[kAstcPairs * 6 * kAstcLanes];
     const float* const channels[2] = {shape.field[1], shape.field[2]};
     const float* const lines[3] = {shape.line[0], shape.line[1], shape.line[2]};
     const auto& grids = guide.of_parts[partitions - 2];
     const bool has_planes =
         std::any_of(grids.begin(), grids.end(), [](const AstcGuide::Grid& grid) { return grid.has_planes; });
+    if (has_planes) FoldTexels<2>(block, channels, folded);
+    if (partitions == 2) {
+        FoldTexels<2>(block, lines, line_folded);
+    } else {
+        FoldTexels<3>(block, lines, line_folded);
+    }
     int width = 0;
     for (const AstcGuide::Grid& grid : grids) {
         FloatVec two = hn::Zero(d);
@@ -230,11 +237,11 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         if (grid.extent != block) {
             if (grid.extent.width != width) {
                 width = grid.extent.width;
-                if (has_planes) ProjectRows<2>(guide, width, channels, rows);
+                if (has_planes) ProjectRows<2>(guide, width, folded, rows);
                 if (partitions == 2) {
-                    ProjectRows<2>(guide, width, lines, line_rows);
+                    ProjectRows<2>(guide, width, line_folded, line_rows);
                 } else {
-                    ProjectRows<3>(guide, width, lines, line_rows);
+                    ProjectRows<3>(guide, width, line_folded, line_rows);
                 }
             }
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);

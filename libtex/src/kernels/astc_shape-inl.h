@@ -130,52 +130,114 @@ static HWY_NOINLINE void MeasureShape(const AstcGroup& group, int texels, AstcSh
     shape.yy = yy;
 }
 
-// Replaces each row of texels of a few channels by its coordinates in the space that so many weights span.
+// Blocks of a few channels as sums of texels and their mirror images, then as differences, along rows and columns: of a
+// basis, which is the same from both ends or changes its sign, half of the texels are enough then.
 template <int kCount>
-HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* rows) {
+HWY_NOINLINE void FoldTexels(Extent block, const float* const* channels, float* folded) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
-    const Extent block = guide.plans->block;
+    const int across = (block.width + 1) / 2, down = (block.height + 1) / 2;
     for (int c = 0; c < kCount; ++c) {
-        for (int j = 0; j < block.height; ++j) {
-            const float* const from = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
-            for (int w = 0; w < weights; ++w) {
-                FloatVec sum = hn::Zero(d);
-                for (int i = 0; i < block.width; ++i) {
-                    const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
-                    sum = hn::Add(sum, hn::Mul(AstcNumber(guide.basis[0][weights][w][i]), v));
+        const auto texel = [&](int i, int j) {
+            return hn::Load(d, channels[c] + static_cast<std::size_t>(j * block.width + i) * lanes);
+        };
+        const auto put = [&](int i, int j, FloatVec value) {
+            hn::Store(value, d, folded + static_cast<std::size_t>((c * 8 + j) * 8 + i) * lanes);
+        };
+        for (int j = 0; j < down; ++j) {
+            const int below = block.height - 1 - j;
+            for (int i = 0; i < across; ++i) {
+                const int right = block.width - 1 - i;
+                FloatVec sum = texel(i, j), difference = hn::Zero(d);
+                if (right > i) {
+                    difference = hn::Sub(sum, texel(right, j));
+                    sum = hn::Add(sum, texel(right, j));
                 }
-                hn::Store(sum, d, rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes);
+                if (below > j) {
+                    FloatVec other = texel(i, below);
+                    if (right > i) {
+                        const FloatVec last = texel(right, below), off = hn::Sub(other, last);
+                        other = hn::Add(other, last);
+                        put(across + i, down + j, hn::Sub(difference, off));
+                        difference = hn::Add(difference, off);
+                    }
+                    put(i, down + j, hn::Sub(sum, other));
+                    sum = hn::Add(sum, other);
+                }
+                put(i, j, sum);
+                if (right > i) put(across + i, j, difference);
             }
         }
     }
 }
 
-// The sums of products in the space of a grid, of rows that are projected: of two channels xx, yy and xy; of three xx,
-// yy, zz, xy, xz and yz.
+// Projects the rows of folded texels onto the space that so many weights span. Of two rows that are both sums or both
+// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ: of two channels xx, yy
+// and xy; of three xx, yy, zz, xy, xz and yz.
 template <int kCount>
-HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, FloatVec* e) {
+HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* folded, float* gram) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
-    const int height = guide.plans->block.height;
-    for (int n = 0; n < 3 * (kCount - 1); ++n) e[n] = hn::Zero(d);
-    for (int w = 0; w < grid.width; ++w) {
-        for (int h = 0; h < grid.height; ++h) {
-            FloatVec sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-            for (int j = 0; j < height; ++j) {
-                const FloatVec share = AstcNumber(guide.basis[1][grid.height][h][j]);
-                for (int c = 0; c < kCount; ++c) {
-                    const float* const from = rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes;
-                    sum[c] = hn::Add(sum[c], hn::Mul(share, hn::Load(d, from)));
+    const Extent block = guide.plans->block;
+    const int across = (block.width + 1) / 2, down = (block.height + 1) / 2, even = (weights + 1) / 2;
+    alignas(64) float rows[kCount * 64 * kAstcLanes];
+    const auto at = [&](int c, int j, int w) { return static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes; };
+    for (int c = 0; c < kCount; ++c) {
+        for (int j = 0; j < block.height; ++j) {
+            for (int w = 0; w < weights; ++w) {
+                const float* const from = folded + at(c, j, w < even ? 0 : across);
+                FloatVec sum = hn::Zero(d);
+                for (int i = 0; i < (w < even ? across : block.width - across); ++i) {
+                    const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
+                    sum = hn::Add(sum, hn::Mul(AstcNumber(guide.basis[0][weights][w][i]), v));
                 }
+                hn::Store(sum, d, rows + at(c, j, w));
             }
-            for (int c = 0; c < kCount; ++c) e[c] = hn::Add(e[c], hn::Mul(sum[c], sum[c]));
-            e[kCount] = hn::Add(e[kCount], hn::Mul(sum[0], sum[1]));
-            if (kCount < 3) continue;
-            e[4] = hn::Add(e[4], hn::Mul(sum[0], sum[2]));
-            e[5] = hn::Add(e[5], hn::Mul(sum[1], sum[2]));
         }
     }
+    for (int j = 0; j < block.height; ++j) {
+        for (int k = j < down ? 0 : down; k <= j; ++k) {
+            FloatVec sum[3 * (kCount - 1)];
+            for (FloatVec& s : sum) s = hn::Zero(d);
+            for (int w = 0; w < weights; ++w) {
+                FloatVec a[kCount], b[kCount];
+                for (int c = 0; c < kCount; ++c) {
+                    a[c] = hn::Load(d, rows + at(c, j, w));
+                    b[c] = hn::Load(d, rows + at(c, k, w));
+                    sum[c] = hn::Add(sum[c], hn::Mul(a[c], b[c]));
+                }
+                for (int c = 1; c < kCount; ++c) {
+                    for (int e = 0; e < c; ++e) {
+                        FloatVec& s = sum[kCount + e + c - 1];
+                        s = hn::Add(s, hn::Add(hn::Mul(a[e], b[c]), hn::Mul(b[e], a[c])));
+                    }
+                }
+            }
+            for (int n = 0; n < 3 * (kCount - 1); ++n) {
+                const float times = (n < kCount ? 2.0f : 1.0f) * (j == k ? 0.5f : 1.0f);
+                hn::Store(hn::Mul(sum[n], AstcNumber(times)), d, gram);
+                gram += lanes;
+            }
+        }
+    }
+}
+
+// The sums of products in the space of a grid, of rows that are projected.
+template <int kCount>
+HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* gram, FloatVec* e) {
+    const FloatTag d;
+    constexpr int kSums = 3 * (kCount - 1);
+    FloatVec sum[kSums];
+    for (FloatVec& s : sum) s = hn::Zero(d);
+    const int half = guide.plans->block.height / 2, pairs = half * (half + 1);
+    for (int k = 0; k < (half + half == guide.plans->block.height ? pairs : pairs + half + 1); ++k) {
+        const FloatVec share = AstcNumber(guide.pairs[grid.height][k]);
+        for (FloatVec& s : sum) {
+            s = hn::Add(s, hn::Mul(share, hn::Load(d, gram)));
+            gram += hn::Lanes(d);
+        }
+    }
+    for (int n = 0; n < kSums; ++n) e[n] = sum[n];
 }
 
 // Of a texel's value, where it is not inside, another one.
