@@ -112,9 +112,11 @@ void expect_believed(Extent block) {
             for (int p = 0; p < plan.partitions; ++p)
                 content.offsets |= static_cast<unsigned>(offset[p * lanes + l]) << p;
             content.pattern = pattern.index;
-            for (int w = 0; w < plan.mode.weights(); ++w)
-                content.weights[w % plan.mode.planes][w / plan.mode.planes] =
-                    static_cast<std::uint8_t>(fits.weights[w % plan.mode.planes][w / plan.mode.planes * lanes + l]);
+            for (int p = 0; p < plan.mode.planes; ++p) {
+                for (int w = 0; w < plan.grid->weights; ++w)
+                    content.weights[p][w] =
+                        static_cast<std::uint8_t>(fits.weights[p][w / 4 * lanes + l] >> (8 * (w % 4)));
+            }
             for (int n = 0; n < 4 * plan.partitions; ++n)
                 content.ends[n / 4][n / 2 % 2][n % 2] =
                     static_cast<std::uint8_t>(fits.ends[n / 4][n / 2 % 2][n % 2][l]);

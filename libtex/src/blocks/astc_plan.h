@@ -53,7 +53,7 @@ struct AstcOffsets {
     // Of offsets, at 32 + offset, and 64 places farther for bases from 128.
     float nearest_offset[128], lower_offset[128], upper_offset[128];
     std::uint8_t stored_base[128];       // by the lower 7 bits of the base
-    std::int16_t stored_offset[2 * 64];  // by the place of the offset, or -1
+    std::int16_t stored_offset[2 * 64];  // by the place of the offset: the next lower one that can be stored, or -1
 
     static int place(int base, int offset) { return 32 + offset + (base >= 128 ? 64 : 0); }
 };

@@ -2,6 +2,8 @@
 
 #include "kernels/astc_fit.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/astc_fit.cpp"
 #include <hwy/foreach_target.h>
@@ -17,9 +19,17 @@ namespace HWY_NAMESPACE {
 template <int kChannels, int kPartitions>
 HWY_INLINE void StoreLine(const AstcLine<kChannels, kPartitions>& line, int weights, int plane, AstcFits& fits) {
     const FloatTag d;
-    const std::size_t end = static_cast<std::size_t>(weights) * hn::Lanes(d);
-    for (std::size_t k = 0; k < end; k += hn::Lanes(d))
-        hn::Store(hn::Load(d, line.best().weights + k), d, fits.weights[plane] + k);
+    const hn::RebindToUnsigned<FloatTag> du;
+    const hn::RebindToSigned<FloatTag> di;
+    std::uint32_t* to = fits.weights[plane];
+    for (int first = 0; first < weights; first += 4, to += hn::Lanes(d)) {
+        auto four = hn::Zero(du);
+        for (int w = std::min(first + 4, weights); w-- > first;) {
+            const FloatVec weight = hn::Load(d, line.best().weights + static_cast<std::size_t>(w) * hn::Lanes(d));
+            four = hn::Or(hn::ShiftLeft<8>(four), hn::BitCast(du, hn::ConvertTo(di, weight)));
+        }
+        hn::Store(four, du, to);
+    }
     for (int p = 0; p < line.partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             for (int e = 0; e < 2; ++e) hn::Store(line.best().ends.at[p][c][e], d, fits.ends[p][plane + c][e]);

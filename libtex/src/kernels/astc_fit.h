@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstdint>
+
 #include "blocks/astc_plan.h"
 
 namespace tex::inline v1 {
@@ -24,10 +26,11 @@ struct AstcGroup {
     const float* turn = nullptr;  // 1 where the endpoints to begin with change places
 };
 
-// What fits each block: weights by plane, weight and block; endpoints by partition, channel, end and block.
+// What fits each block: weights by plane, weight and block, four weights to a number, from the lowest bits; endpoints by
+// partition, channel, end and block.
 struct AstcFits {
     alignas(64) float error[kAstcLanes];  // squared, in units of `value`
-    alignas(64) float weights[2][kAstcMostWeights * kAstcLanes];
+    alignas(64) std::uint32_t weights[2][kAstcMostWeights / 4 * kAstcLanes];
     alignas(64) float ends[3][2][2][kAstcLanes];
 };
 
