@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -176,6 +177,18 @@ TEST(AstcEncode, KeepsConstantMapsOfEveryCode) {
         const std::vector<float> again = decoded(format, encoded(format, Effort::fast, xy, extent), extent);
         for (std::size_t k = 0; k < xy.size(); ++k) ASSERT_NEAR(again[k], xy[k], 1.0f / 2048.0f) << k;
     }
+}
+
+TEST(AstcEncode, TakesWhatIsNotANumberForTheLeastValue) {
+    const Extent extent{13, 9};
+    std::vector<float> xy = bumps(extent), least = xy;
+    for (std::size_t k = 0; k < xy.size(); k += k / 3 + 1) {
+        xy[k] = std::numeric_limits<float>::quiet_NaN();
+        least[k] = -1.0f;
+    }
+    for (const Effort effort : kEfforts)
+        EXPECT_EQ(encoded(Format::astc_4x4_unorm, effort, xy, extent),
+                  encoded(Format::astc_4x4_unorm, effort, least, extent));
 }
 
 TEST(AstcEncode, MoreEffortGivesSmallerErrors) {

@@ -52,9 +52,10 @@ void MeasureCoarse(const AstcShape& shape, int texels, FloatVec coarse[kAstcCoar
     }
 }
 
+// What is not a number becomes the least value.
 HWY_INLINE FloatVec AstcPlaneValue(FloatVec n, FloatVec scale) {
     const FloatVec one = AstcNumber(1.0f), minus_one = AstcNumber(-1.0f);
-    const FloatVec low = hn::IfThenElse(hn::Lt(n, minus_one), minus_one, n);
+    const FloatVec low = hn::IfThenElse(hn::Gt(n, minus_one), n, minus_one);
     return hn::Mul(hn::Add(hn::IfThenElse(hn::Lt(one, low), one, low), one), scale);
 }
 
@@ -70,8 +71,8 @@ void AstcPlanes(const float* xy, std::size_t count, float scale, float* x, float
         hn::StoreU(AstcPlaneValue(v, by), d, y + k);
     }
     for (; k < count; ++k) {
-        x[k] = (std::clamp(xy[2 * k], -1.0f, 1.0f) + 1.0f) * scale;
-        y[k] = (std::clamp(xy[2 * k + 1], -1.0f, 1.0f) + 1.0f) * scale;
+        x[k] = (std::min(std::max(-1.0f, xy[2 * k]), 1.0f) + 1.0f) * scale;
+        y[k] = (std::min(std::max(-1.0f, xy[2 * k + 1]), 1.0f) + 1.0f) * scale;
     }
 }
 

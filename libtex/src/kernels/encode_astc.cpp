@@ -134,7 +134,7 @@ void encode_astc_luminance(Format format, Effort effort, const float* luminance,
     encode_planes(format, effort, 1, extent, blocks, [&](int first, int rows, float* values, float*) {
         const float* const from = luminance + to_size(first) * to_size(extent.width);
         std::transform(from, from + rows * extent.width, values,
-                       [](float v) { return std::clamp(v, 0.0f, 1.0f) * kAstcOne; });
+                       [](float v) { return std::min(std::max(0.0f, v), 1.0f) * kAstcOne; });
     });
 }
 
