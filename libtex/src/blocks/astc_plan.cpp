@@ -117,6 +117,12 @@ std::unique_ptr<AstcGrid> make_grid(Extent block, Extent extent) {
         grid.over_squares[w] = 1.0f / squares;
     }
     grid.begin[grid.weights] = next;
+    int placed = 0;
+    for (const int first : {0, 3, 1, 2}) {
+        for (int j = first / 2; j < extent.height; j += 2) {
+            for (int i = first % 2; i < extent.width; i += 2) grid.order[placed++] = j * extent.width + i;
+        }
+    }
     return made;
 }
 

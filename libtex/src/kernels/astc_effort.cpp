@@ -21,14 +21,14 @@ AstcEffort astc_effort(Format format, Effort effort) {
         spends.reach.pattern_steps = is_small ? 2 : 4;
     } else {
         spends.guesses = 32;
-        spends.steps = {.insets = 3, .iterations = 2, .sweeps = 2, .near_ends = true};
+        spends.steps = {.insets = 2, .iterations = 2, .sweeps = 2, .near_ends = true};
         for (int p = 0; p < 2; ++p) {
             spends.patterns[p] = p == 0 ? 5 : 4;
             spends.part_plans[p] = p == 0 ? 12 : 4;
         }
         spends.both_ends = true;
         spends.polished = 6;
-        spends.polish = {.insets = 5, .starts = 2, .iterations = 5, .sweeps = 3, .near_ends = true, .polishes = 3};
+        spends.polish = {.insets = 3, .starts = 2, .iterations = 3, .sweeps = 3, .near_ends = true, .polishes = 3};
         spends.reach.measures_coarse = spends.reach.part_planes = true;
     }
     return spends;

@@ -40,7 +40,7 @@ struct AstcSteps {
     int iterations = 1;      // of weights and endpoints
     int sweeps = 1;          // over the weights of a grid, before and while they are rounded
     bool near_ends = false;  // weighs the endpoints beside those of least squares
-    int polishes = 0;        // rounds of trying the endpoints beside the best, each with weights of its own
+    int polishes = 0;        // rounds of trying the endpoints beside the best, each with weights near the best
 };
 
 // The number of blocks that fit_astc() fits: the distance of values of neighbouring texels in the arrays above.

@@ -44,9 +44,9 @@ void AstcLine<kChannels, kPartitions>::make_ideal(const Ends& ends) {
 }
 
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends) {
+void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends, bool is_near_best) {
     make_ideal(ends);
-    if (!plan_.grid->is_full) return round_grid();
+    if (!plan_.grid->is_full) return round_grid(is_near_best);
     for (int k = 0; k < plan_.grid->texels; ++k) {
         const AstcFloat halves = hn::Mul(hn::Load(d_, ideal_ + at(k)), number(128.0f));
         const AstcFloat weight =
@@ -57,10 +57,15 @@ void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends) {
 }
 
 // Changes each weight of the grid to that which leaves least, given the others: first as a real number, then as one
-// that can be stored. `ideal_` becomes what is left.
+// that can be stored. Weights near the best ones begin with those and are rounded at once. `ideal_` becomes what is
+// left.
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::round_grid() {
+void AstcLine<kChannels, kPartitions>::round_grid(bool is_near_best) {
     for (int w = 0; w < plan_.grid->weights; ++w) {
+        if (is_near_best) {
+            hn::Store(hn::Mul(hn::Load(d_, best_.weights + at(w)), number(1.0f / 64.0f)), d_, grid_ + at(w));
+            continue;
+        }
         AstcFloat sum = hn::Zero(d_);
         for (int s = plan_.grid->begin[w]; s < plan_.grid->begin[w + 1]; ++s) {
             sum = hn::Add(sum, hn::Mul(number(plan_.grid->shares[s].share),
@@ -76,9 +81,9 @@ void AstcLine<kChannels, kPartitions>::round_grid() {
         }
         hn::Store(left, d_, ideal_ + at(k));
     }
-    for (int sweep = 0; sweep < 2 * steps_.sweeps; ++sweep) {
+    for (int sweep = is_near_best ? steps_.sweeps : 0; sweep < 2 * steps_.sweeps; ++sweep) {
         const bool rounds = sweep >= steps_.sweeps;
-        for (int w = 0; w < plan_.grid->weights; ++w) change_weight(w, rounds);
+        for (int n = 0; n < plan_.grid->weights; ++n) change_weight(plan_.grid->order[n], rounds);
     }
     for (int w = 0; w < plan_.grid->weights; ++w) {
         hn::Store(hn::Mul(hn::Load(d_, grid_ + at(w)), number(64.0f)), d_, grid_ + at(w));
@@ -300,7 +305,7 @@ bool AstcLine<kChannels, kPartitions>::polish() {
                 AstcFloat* const end = ends.at[p][c];
                 end[0] = first_end(p, end[0], way / 3 - 1);
                 end[1] = second_end(p, end[0], end[1], way % 3 - 1);
-                make_weights(ends);
+                make_weights(ends, true);
                 is_better = keep(ends) || is_better;
             }
         }
