@@ -36,18 +36,16 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
     return left;
 }
 
-void MeasureCoarse(const AstcShape& shape, int texels, FloatVec coarse[kAstcCoarseLevels]) {
+// `line` holds the places along the direction in which texels differ most.
+void MeasureCoarse(const AstcShape& shape, const float* line, int texels, FloatVec coarse[kAstcCoarseLevels]) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
-    alignas(64) float line[kAstcMostPlanned * kAstcLanes];
-    for (std::size_t k = 0; k < end; k += lanes) {
-        const FloatVec x = hn::Mul(hn::Load(d, shape.v[0] + k), shape.cos);
-        const FloatVec y = hn::Mul(hn::Load(d, shape.v[1] + k), shape.sin);
-        hn::Store(hn::Sub(hn::Add(x, y), shape.line_middle), d, line + k);
-    }
+    alignas(64) float field[kAstcMostPlanned * kAstcLanes];
+    for (std::size_t k = 0; k < end; k += lanes)
+        hn::Store(hn::Sub(hn::Load(d, line + k), shape.line_middle), d, field + k);
     for (int l = 0; l < kAstcCoarseLevels; ++l) {
         const FloatVec leave =
-            CoarseLeave(line, nullptr, 0, hn::Sqrt(shape.line_range), static_cast<float>(l + 1), end);
+            CoarseLeave(field, nullptr, 0, hn::Sqrt(shape.line_range), static_cast<float>(l + 1), end);
         coarse[l] = CoarseShare(leave, shape.line_range, l, texels);
     }
 }
@@ -90,28 +88,30 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         hn::Max(hn::Sub(shape.greatest[0], shape.least[0]), hn::Sub(shape.greatest[1], shape.least[1]));
     hn::Store(widest, d, guesses.widest);
     const auto is_narrow = hn::Le(widest, AstcNumber(kAstcNarrow));
-    alignas(64) float folded[2 * 64 * kAstcLanes], rows[kAstcPairs * 3 * kAstcLanes];
-    const float* const channels[2] = {shape.v[0], shape.v[1]};
+    alignas(64) float folded[2 * 64 * kAstcLanes], rows[kAstcPairs * 2 * kAstcLanes];
+    // Along the direction in which texels differ most, and across.
+    alignas(64) float turned[2][kAstcMostPlanned * kAstcLanes];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.width * block.height) * hn::Lanes(d); k += hn::Lanes(d)) {
+        const FloatVec x = hn::Load(d, shape.v[0] + k), y = hn::Load(d, shape.v[1] + k);
+        hn::Store(hn::Add(hn::Mul(x, shape.cos), hn::Mul(y, shape.sin)), d, turned[0] + k);
+        hn::Store(hn::Sub(hn::Mul(y, shape.cos), hn::Mul(x, shape.sin)), d, turned[1] + k);
+    }
+    const float* const channels[2] = {turned[0], turned[1]};
     FoldTexels<2>(block, channels, folded);
+    const FloatVec energy = hn::Add(shape.xx, shape.yy), along = hn::Sub(energy, shape.across);
     FloatVec coarse[kAstcCoarseLevels];
-    if (guide.measures_coarse) MeasureCoarse(shape, block.width * block.height, coarse);
+    if (guide.measures_coarse) MeasureCoarse(shape, turned[0], block.width * block.height, coarse);
     int width = 0;
     for (const AstcGuide::Grid& grid : guide.grids) {
-        // All energies inside the space of the grid; the rest is error.
-        FloatVec in[3] = {shape.xx, shape.yy, shape.xy};
+        // The energies inside the space of the grid; the rest is error.
+        FloatVec in[2] = {along, shape.across};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows<2>(guide, grid.extent.width, folded, rows);
+            if (grid.extent.width != width) ProjectRows<2, false>(guide, grid.extent.width, folded, rows);
             width = grid.extent.width;
             ProjectColumns<2>(guide, grid.extent, rows, in);
         }
-        const FloatVec out_x = hn::Sub(shape.xx, in[0]), out_y = hn::Sub(shape.yy, in[1]);
-        const FloatVec out_xy = hn::Sub(shape.xy, in[2]);
-        const FloatVec two = hn::Max(hn::Add(out_x, out_y), hn::Zero(d));
-        const FloatVec cross = hn::Mul(hn::Mul(shape.cos, shape.sin), hn::Add(out_xy, out_xy));
-        const FloatVec along = hn::Add(
-            hn::Add(hn::Mul(hn::Mul(shape.cos, shape.cos), out_x), hn::Mul(hn::Mul(shape.sin, shape.sin), out_y)),
-            cross);
-        const FloatVec one = hn::Add(hn::Max(along, hn::Zero(d)), shape.across);
+        const FloatVec two = hn::Max(hn::Sub(energy, hn::Add(in[0], in[1])), hn::Zero(d));
+        const FloatVec one = hn::Add(hn::Max(hn::Sub(along, in[0]), hn::Zero(d)), shape.across);
         for (const AstcGuide::Choice& choice : grid.choices) {
             const FloatVec range = choice.planes == 2 ? shape.ranges : shape.line_range;
             const FloatVec ends = hn::IfThenElse(is_narrow, AstcNumber(choice.offsets), AstcNumber(choice.ends));

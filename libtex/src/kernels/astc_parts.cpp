@@ -184,11 +184,11 @@ HWY_NOINLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const f
     const FloatVec zero = hn::Zero(d);
     FloatVec sum[6];
     if (partitions == 2) {
-        ProjectColumns<2>(guide, grid, rows, sum);
+        ProjectColumns<3>(guide, grid, rows, sum);
         const FloatVec cross = hn::Abs(sum[2]), inside = hn::Add(hn::Add(sum[0], sum[1]), hn::Add(cross, cross));
         return {hn::Sub(energy, inside), hn::IfThenElseZero(hn::Lt(sum[2], zero), AstcNumber(2.0f))};
     }
-    ProjectColumns<3>(guide, grid, rows, sum);
+    ProjectColumns<6>(guide, grid, rows, sum);
     const FloatVec squares = hn::Add(hn::Add(sum[0], sum[1]), sum[2]);
     FloatVec most = AstcNumber(-1e30f), turns = zero;
     for (int turn = 0; turn < 8; turn += 2) {
@@ -218,7 +218,7 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
     }
     const FloatVec energies = hn::Add(energy[1], energy[2]);
     alignas(64) float folded[2 * 64 * kAstcLanes], line_folded[3 * 64 * kAstcLanes];
-    alignas(64) float rows[kAstcPairs * 3 * kAstcLanes], line_rows[kAstcPairs * 6 * kAstcLanes];
+    alignas(64) float rows[kAstcPairs * 2 * kAstcLanes], line_rows[kAstcPairs * 6 * kAstcLanes];
     const float* const channels[2] = {shape.field[1], shape.field[2]};
     const float* const lines[3] = {shape.line[0], shape.line[1], shape.line[2]};
     const auto& grids = guide.of_parts[partitions - 2];
@@ -237,16 +237,16 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         if (grid.extent != block) {
             if (grid.extent.width != width) {
                 width = grid.extent.width;
-                if (has_planes) ProjectRows<2>(guide, width, folded, rows);
+                if (has_planes) ProjectRows<2, false>(guide, width, folded, rows);
                 if (partitions == 2) {
-                    ProjectRows<2>(guide, width, line_folded, line_rows);
+                    ProjectRows<2, true>(guide, width, line_folded, line_rows);
                 } else {
-                    ProjectRows<3>(guide, width, line_folded, line_rows);
+                    ProjectRows<3, true>(guide, width, line_folded, line_rows);
                 }
             }
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
             if (grid.has_planes) {
-                FloatVec in[3];
+                FloatVec in[2];
                 ProjectColumns<2>(guide, grid.extent, rows, in);
                 two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
             }

@@ -172,13 +172,14 @@ HWY_NOINLINE void FoldTexels(Extent block, const float* const* channels, float* 
 }
 
 // Projects the rows of folded texels onto the space that so many weights span. Of two rows that are both sums or both
-// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ: of two channels xx, yy
-// and xy; of three xx, yy, zz, xy, xz and yz.
-template <int kCount>
+// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ. With kCross these are, of
+// two channels, xx, yy and xy; of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
+template <int kCount, bool kCross>
 HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* folded, float* gram) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
+    constexpr int kSums = kCross ? 3 * (kCount - 1) : kCount;
     const int across = (block.width + 1) / 2, down = (block.height + 1) / 2, even = (weights + 1) / 2;
     alignas(64) float rows[kCount * 64 * kAstcLanes];
     const auto at = [&](int c, int j, int w) { return static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes; };
@@ -197,7 +198,7 @@ HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* 
     }
     for (int j = 0; j < block.height; ++j) {
         for (int k = j < down ? 0 : down; k <= j; ++k) {
-            FloatVec sum[3 * (kCount - 1)];
+            FloatVec sum[kSums];
             for (FloatVec& s : sum) s = hn::Zero(d);
             for (int w = 0; w < weights; ++w) {
                 FloatVec a[kCount], b[kCount];
@@ -206,14 +207,14 @@ HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* 
                     b[c] = hn::Load(d, rows + at(c, k, w));
                     sum[c] = hn::Add(sum[c], hn::Mul(a[c], b[c]));
                 }
-                for (int c = 1; c < kCount; ++c) {
+                for (int c = 1; c < kCount && kCross; ++c) {
                     for (int e = 0; e < c; ++e) {
                         FloatVec& s = sum[kCount + e + c - 1];
                         s = hn::Add(s, hn::Add(hn::Mul(a[e], b[c]), hn::Mul(b[e], a[c])));
                     }
                 }
             }
-            for (int n = 0; n < 3 * (kCount - 1); ++n) {
+            for (int n = 0; n < kSums; ++n) {
                 const float times = (n < kCount ? 2.0f : 1.0f) * (j == k ? 0.5f : 1.0f);
                 hn::Store(hn::Mul(sum[n], AstcNumber(times)), d, gram);
                 gram += lanes;
@@ -223,10 +224,9 @@ HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* 
 }
 
 // The sums of products in the space of a grid, of rows that are projected.
-template <int kCount>
+template <int kSums>
 HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* gram, FloatVec* e) {
     const FloatTag d;
-    constexpr int kSums = 3 * (kCount - 1);
     FloatVec sum[kSums];
     for (FloatVec& s : sum) s = hn::Zero(d);
     const int half = guide.plans->block.height / 2, pairs = half * (half + 1);
