@@ -2,7 +2,7 @@
 
 #include "blocks/astc_ise.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace tex::inline v1 {
 namespace {
@@ -237,16 +237,16 @@ template <int kGroup, unsigned kUpper>
 void write_shared(AstcBits& bits, int at, int lower_bits, int count, const std::uint8_t* values) {
     const Part* const parts = kUpper == 3 ? kTritParts : kQuintParts;
     const std::uint8_t* const shared_by = kUpper == 3 ? kSharing.of_trits : kSharing.of_quints;
-    for (int first = 0; first < count; first += kGroup) {
-        const int n = count - first < kGroup ? count - first : kGroup;
-        std::uint8_t value[kGroup] = {};
-        for (int k = 0; k < n; ++k) value[k] = values[first + k];
+    std::uint8_t last[kGroup] = {};
+    for (; count > 0; count -= kGroup, values += kGroup) {
+        const int n = count < kGroup ? count : kGroup;
+        if (n < kGroup) values = std::copy_n(values, n, last) - n;
         unsigned number = 0;
-        for (int k = kGroup; k-- > 0;) number = number * kUpper + (value[k] >> lower_bits);
+        for (int k = kGroup; k-- > 0;) number = number * kUpper + (values[k] >> lower_bits);
         const std::uint64_t shared = shared_by[number];
         std::uint64_t all = 0;
         for (int k = 0; k < kGroup; ++k) {
-            const std::uint64_t lower = value[k] & ((1u << lower_bits) - 1);
+            const std::uint64_t lower = values[k] & ((1u << lower_bits) - 1);
             const std::uint64_t upper = shared & (((1u << parts[k].count) - 1) << parts[k].at);
             all |= lower << (k * lower_bits + parts[k].at) | upper << ((k + 1) * lower_bits);
         }

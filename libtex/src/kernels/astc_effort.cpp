@@ -8,7 +8,7 @@ AstcEffort astc_effort(Format format, Effort effort) {
     const bool is_small = format == Format::astc_4x4_unorm;
     AstcEffort spends;
     if (effort == Effort::fast) {
-        spends.steps = {.insets = 0};
+        spends.steps = {.insets = 0, .iterations = is_small ? 1 : 2};
         spends.reach.best_alone = true;
     } else if (effort == Effort::normal) {
         spends.guesses = 2;

@@ -38,7 +38,8 @@ struct AstcSteps {
     int insets = 3;          // for each endpoint, places to begin at, of which all pairs are weighed
     int starts = 1;          // pairs of endpoints to begin with, at most 2
     int iterations = 1;      // of weights and endpoints
-    int sweeps = 1;          // over the weights of a grid, before and while they are rounded
+    int sweeps = 1;          // over the weights of a grid, before and while they are rounded; with one, iterations after
+                             // the first round at once
     bool near_ends = false;  // weighs the endpoints beside those of least squares
     int polishes = 0;        // rounds of trying the endpoints beside the best, each with weights near the best
 };

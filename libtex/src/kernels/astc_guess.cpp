@@ -24,14 +24,17 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
     const std::size_t end = static_cast<std::size_t>(block.width * block.height) * hn::Lanes(d);
     FloatVec left = hn::Zero(d);
     for (int c = 0; c < 2; ++c) {
-        const FloatVec range = hn::Sub(shape.greatest[c], shape.least[c]);
-        const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / (levels - 1.0f)));
-        const FloatVec over = hn::Div(AstcNumber(1.0f), step);
+        const FloatVec range = hn::Max(hn::Sub(shape.greatest[c], shape.least[c]), AstcNumber(1e-3f));
+        const FloatVec over = hn::Div(AstcNumber(levels - 1.0f), range), half = AstcNumber(0.5f);
+        const FloatVec first = hn::Sub(half, hn::Mul(shape.least[c], over));
+        FloatVec sum = hn::Zero(d);
         for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
-            const FloatVec place = hn::Mul(hn::Sub(hn::Load(d, shape.v[c] + k), shape.least[c]), over);
-            const FloatVec off = hn::Sub(place, hn::Floor(hn::Add(place, AstcNumber(0.5f))));
-            left = hn::Add(left, hn::Mul(hn::Mul(off, off), hn::Mul(step, step)));
+            const FloatVec place = hn::Add(hn::Mul(hn::Load(d, shape.v[c] + k), over), first);
+            const FloatVec off = hn::Sub(hn::Sub(place, hn::Floor(place)), half);
+            sum = hn::Add(sum, hn::Mul(off, off));
         }
+        const FloatVec step = hn::Mul(range, AstcNumber(1.0f / (levels - 1.0f)));
+        left = hn::Add(left, hn::Mul(sum, hn::Mul(step, step)));
     }
     return left;
 }

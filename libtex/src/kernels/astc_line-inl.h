@@ -65,7 +65,7 @@ public:
         for (int k = 0; k < steps_.starts; ++k) {
             Ends ends = starts[k];
             for (int n = 0; n < steps_.iterations; ++n) {
-                make_weights(ends, false);
+                make_weights(ends, n > 0 && steps_.sweeps == 1 ? grid_ : nullptr);
                 make_ends(ends);
                 keep(ends);
             }
@@ -119,8 +119,8 @@ private:
     void make_starts(Ends* starts);
     void try_starts(int p, AstcFloat best[2][2]) const;
     void make_ideal(const Ends& ends);
-    void make_weights(const Ends& ends, bool is_near_best);
-    void round_grid(bool is_near_best);
+    void make_weights(const Ends& ends, const float* near);
+    void round_grid(const float* near);
     void change_weight(int w, bool rounds);
     void make_ends(Ends& ends) const;
     AstcFloat first_end(int p, AstcFloat end, int way) const;

@@ -44,9 +44,9 @@ void AstcLine<kChannels, kPartitions>::make_ideal(const Ends& ends) {
 }
 
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends, bool is_near_best) {
+void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends, const float* near) {
     make_ideal(ends);
-    if (!plan_.grid->is_full) return round_grid(is_near_best);
+    if (!plan_.grid->is_full) return round_grid(near);
     for (int k = 0; k < plan_.grid->texels; ++k) {
         const AstcFloat halves = hn::Mul(hn::Load(d_, ideal_ + at(k)), number(128.0f));
         const AstcFloat weight =
@@ -57,13 +57,13 @@ void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends, bool is_ne
 }
 
 // Changes each weight of the grid to that which leaves least, given the others: first as a real number, then as one
-// that can be stored. Weights near the best ones begin with those and are rounded at once. `ideal_` becomes what is
+// that can be stored. Weights that are near others begin with those and are rounded at once. `ideal_` becomes what is
 // left.
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::round_grid(bool is_near_best) {
+void AstcLine<kChannels, kPartitions>::round_grid(const float* near) {
     for (int w = 0; w < plan_.grid->weights; ++w) {
-        if (is_near_best) {
-            hn::Store(hn::Mul(hn::Load(d_, best_.weights + at(w)), number(1.0f / 64.0f)), d_, grid_ + at(w));
+        if (near != nullptr) {
+            hn::Store(hn::Mul(hn::Load(d_, near + at(w)), number(1.0f / 64.0f)), d_, grid_ + at(w));
             continue;
         }
         AstcFloat sum = hn::Zero(d_);
@@ -81,7 +81,7 @@ void AstcLine<kChannels, kPartitions>::round_grid(bool is_near_best) {
         }
         hn::Store(left, d_, ideal_ + at(k));
     }
-    for (int sweep = is_near_best ? steps_.sweeps : 0; sweep < 2 * steps_.sweeps; ++sweep) {
+    for (int sweep = near != nullptr ? steps_.sweeps : 0; sweep < 2 * steps_.sweeps; ++sweep) {
         const bool rounds = sweep >= steps_.sweeps;
         for (int n = 0; n < plan_.grid->weights; ++n) change_weight(plan_.grid->order[n], rounds);
     }
@@ -305,7 +305,7 @@ bool AstcLine<kChannels, kPartitions>::polish() {
                 AstcFloat* const end = ends.at[p][c];
                 end[0] = first_end(p, end[0], way / 3 - 1);
                 end[1] = second_end(p, end[0], end[1], way % 3 - 1);
-                make_weights(ends, true);
+                make_weights(ends, best_.weights);
                 is_better = keep(ends) || is_better;
             }
         }
