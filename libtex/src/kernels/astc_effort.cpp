@@ -14,9 +14,9 @@ AstcEffort astc_effort(Format format, Effort effort) {
         spends.guesses = 2;
         spends.likely = 1.5f;
         // Many weights make up for endpoints that are not the best to begin with.
-        spends.steps = {.insets = is_small ? 3 : 2, .iterations = 2, .sweeps = 2, .near_ends = true};
+        spends.steps = {.insets = is_small ? 3 : 2, .iterations = 3, .near_ends = true};
         spends.patterns[0] = 1;
-        spends.part_plans[0] = 2;
+        spends.part_plans[0] = 3;
         spends.worth = 3.0f;
         spends.reach.pattern_steps = is_small ? 2 : 4;
     } else {
