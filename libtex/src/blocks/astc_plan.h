@@ -32,10 +32,10 @@ struct AstcGrid {
     float infill[kAstcMostPlanned][4];
     AstcShare shares[4 * kAstcMostPlanned];  // by weight
     int begin[kAstcMostWeights + 1];         // of a weight in `shares`
-    // All weights, each after one that shares no texel with it if possible: a processor need not wait for that one.
+    // All weights, most of them after one that shares no texel with them: a processor need not wait for that one.
     int order[kAstcMostWeights];
-    float over_sum[kAstcMostWeights];        // 1 / the sum of the shares of a weight
-    float over_squares[kAstcMostWeights];    // 1 / the sum of their squares
+    float over_sum[kAstcMostWeights];      // 1 / the sum of the shares of a weight
+    float over_squares[kAstcMostWeights];  // 1 / the sum of their squares
 };
 
 // The values of weights, from 0 to 64, or of endpoints, from 0 to 255.

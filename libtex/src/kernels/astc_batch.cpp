@@ -207,7 +207,8 @@ void AstcBatch::write(int block, std::byte* bytes) {
 void AstcBatch::encode(int count, std::byte* blocks) {
     found_.resize(place(count));
     for (Found& found : found_) found.error = kAstcNone;  // the first candidate sets all else
-    for (int block = count; block % lanes_ != 0; ++block) {  // beside the last ones
+    // Vectors may reach past the last block.
+    for (int block = count; block % lanes_ != 0; ++block) {
         for (int k = 0; k < 2 * texels_ * lanes_; k += lanes_) values(block, 0)[k] = 0.0f;
     }
     range_.assign(place(count), 0.0f);

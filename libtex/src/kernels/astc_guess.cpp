@@ -41,14 +41,10 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
 
 // `line` holds the places along the direction in which texels differ most.
 void MeasureCoarse(const AstcShape& shape, const float* line, int texels, FloatVec coarse[kAstcCoarseLevels]) {
-    const FloatTag d;
-    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
-    alignas(64) float field[kAstcMostPlanned * kAstcLanes];
-    for (std::size_t k = 0; k < end; k += lanes)
-        hn::Store(hn::Sub(hn::Load(d, line + k), shape.line_middle), d, field + k);
+    const std::size_t lanes = hn::Lanes(FloatTag()), end = static_cast<std::size_t>(texels) * lanes;
     for (int l = 0; l < kAstcCoarseLevels; ++l) {
-        const FloatVec leave =
-            CoarseLeave(field, nullptr, 0, hn::Sqrt(shape.line_range), static_cast<float>(l + 1), end);
+        const FloatVec leave = CoarseLeave(line, shape.line_middle, nullptr, 0, hn::Sqrt(shape.line_range),
+                                           static_cast<float>(l + 1), end);
         coarse[l] = CoarseShare(leave, shape.line_range, l, texels);
     }
 }
@@ -91,25 +87,26 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         hn::Max(hn::Sub(shape.greatest[0], shape.least[0]), hn::Sub(shape.greatest[1], shape.least[1]));
     hn::Store(widest, d, guesses.widest);
     const auto is_narrow = hn::Le(widest, AstcNumber(kAstcNarrow));
-    alignas(64) float folded[2 * 64 * kAstcLanes], rows[kAstcPairs * 2 * kAstcLanes];
+    alignas(64) float rows[kAstcPairs * 2 * kAstcLanes];
     // Along the direction in which texels differ most, and across.
     alignas(64) float turned[2][kAstcMostPlanned * kAstcLanes];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(block.width * block.height) * hn::Lanes(d); k += hn::Lanes(d)) {
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(block.width * block.height) * lanes;
+    for (std::size_t k = 0; k < end; k += lanes) {
         const FloatVec x = hn::Load(d, shape.v[0] + k), y = hn::Load(d, shape.v[1] + k);
         hn::Store(hn::Add(hn::Mul(x, shape.cos), hn::Mul(y, shape.sin)), d, turned[0] + k);
         hn::Store(hn::Sub(hn::Mul(y, shape.cos), hn::Mul(x, shape.sin)), d, turned[1] + k);
     }
-    const float* const channels[2] = {turned[0], turned[1]};
-    FoldTexels<2>(block, channels, folded);
     const FloatVec energy = hn::Add(shape.xx, shape.yy), along = hn::Sub(energy, shape.across);
     FloatVec coarse[kAstcCoarseLevels];
     if (guide.measures_coarse) MeasureCoarse(shape, turned[0], block.width * block.height, coarse);
+    const float* const channels[2] = {turned[0], turned[1]};
+    for (float* channel : turned) FoldTexels(block, channel);
     int width = 0;
     for (const AstcGuide::Grid& grid : guide.grids) {
         // The energies inside the space of the grid; the rest is error.
         FloatVec in[2] = {along, shape.across};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows<2, false>(guide, grid.extent.width, folded, rows);
+            if (grid.extent.width != width) ProjectRows<2, false>(guide, grid.extent.width, channels, rows);
             width = grid.extent.width;
             ProjectColumns<2>(guide, grid.extent, rows, in);
         }

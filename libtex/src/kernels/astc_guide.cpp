@@ -91,14 +91,11 @@ void make_basis(int texels, int weights, float basis[8][8]) {
 }
 
 void make_pairs(int texels, int weights, const float basis[8][8], float* pairs) {
-    const int even = (weights + 1) / 2, half = (texels + 1) / 2;
+    const int even = (weights + 1) / 2, middle = (texels + 1) / 2;
     for (int j = 0; j < texels; ++j) {
-        const int first = j < half ? 0 : half;
-        for (int k = first; k <= j; ++k) {
-            float sum = 0;
-            for (int w = first == 0 ? 0 : even; w < (first == 0 ? even : weights); ++w)
-                sum += basis[w][j - first] * basis[w][k - first];
-            *pairs++ = sum;
+        for (int k = j < middle ? 0 : middle; k <= j; ++k, ++pairs) {
+            for (int w = j < middle ? 0 : even; w < (j < middle ? even : weights); ++w)
+                *pairs += basis[w][j] * basis[w][k];
         }
     }
 }

@@ -15,7 +15,7 @@ inline constexpr float kAstcNarrow = 31.0f;
 // The noise of weights of 2 to 5 levels is measured.
 inline constexpr int kAstcCoarseLevels = 4;
 
-// Pairs of texels up to the middle, for the first vectors of a basis (below) and for the others.
+// Pairs of texels that are both up to the middle or both after it.
 inline constexpr int kAstcPairs = 20;
 
 // Plans that blocks of a size may use, in an order that the guesses need.
@@ -43,8 +43,8 @@ struct AstcGuide {
     // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
     // The first (weights + 1) / 2 vectors are the same from both ends, the others change their sign.
     float basis[2][9][8][8];
-    // Of the height, by weights: products of two numbers of a vector, up to the middle, summed over the first vectors,
-    // then over the others.
+    // Of the height, by weights: products of two numbers of a vector, summed over the vectors. For numbers up to the
+    // middle, these are the first vectors, for those after it the others.
     float pairs[9][kAstcPairs];
 };
 

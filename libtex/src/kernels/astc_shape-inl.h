@@ -130,52 +130,30 @@ static HWY_NOINLINE void MeasureShape(const AstcGroup& group, int texels, AstcSh
     shape.yy = yy;
 }
 
-// Blocks of a few channels as sums of texels and their mirror images, then as differences, along rows and columns: of a
-// basis, which is the same from both ends or changes its sign, half of the texels are enough then.
-template <int kCount>
-HWY_NOINLINE void FoldTexels(Extent block, const float* const* channels, float* folded) {
+// Replaces the texels of a channel by the sums of them and their mirror images, and those after the middle by the
+// differences, along rows and columns: bases, which are the same from both ends or change their signs, need only half
+// of the texels then.
+static HWY_NOINLINE void FoldTexels(Extent block, float* channel) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
-    const int across = (block.width + 1) / 2, down = (block.height + 1) / 2;
-    for (int c = 0; c < kCount; ++c) {
-        const auto texel = [&](int i, int j) {
-            return hn::Load(d, channels[c] + static_cast<std::size_t>(j * block.width + i) * lanes);
-        };
-        const auto put = [&](int i, int j, FloatVec value) {
-            hn::Store(value, d, folded + static_cast<std::size_t>((c * 8 + j) * 8 + i) * lanes);
-        };
-        for (int j = 0; j < down; ++j) {
-            const int below = block.height - 1 - j;
-            for (int i = 0; i < across; ++i) {
-                const int right = block.width - 1 - i;
-                FloatVec sum = texel(i, j), difference = hn::Zero(d);
-                if (right > i) {
-                    difference = hn::Sub(sum, texel(right, j));
-                    sum = hn::Add(sum, texel(right, j));
-                }
-                if (below > j) {
-                    FloatVec other = texel(i, below);
-                    if (right > i) {
-                        const FloatVec last = texel(right, below), off = hn::Sub(other, last);
-                        other = hn::Add(other, last);
-                        put(across + i, down + j, hn::Sub(difference, off));
-                        difference = hn::Add(difference, off);
-                    }
-                    put(i, down + j, hn::Sub(sum, other));
-                    sum = hn::Add(sum, other);
-                }
-                put(i, j, sum);
-                if (right > i) put(across + i, j, difference);
-            }
+    const auto fold = [&](int first, int count, int step) {
+        for (int i = 0; i < count / 2; ++i) {
+            float* const from = channel + static_cast<std::size_t>(first + i * step) * lanes;
+            float* const to = channel + static_cast<std::size_t>(first + (count - 1 - i) * step) * lanes;
+            const FloatVec a = hn::Load(d, from), b = hn::Load(d, to);
+            hn::Store(hn::Add(a, b), d, from);
+            hn::Store(hn::Sub(a, b), d, to);
         }
-    }
+    };
+    for (int j = 0; j < block.height; ++j) fold(j * block.width, block.width, 1);
+    for (int i = 0; i < block.width; ++i) fold(i, block.height, block.width);
 }
 
-// Projects the rows of folded texels onto the space that so many weights span. Of two rows that are both sums or both
-// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ. With kCross these are, of
-// two channels, xx, yy and xy; of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
+// Projects the rows of folded channels onto the space that so many weights span. Of two rows that are both sums or both
+// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ. With kCross these are,
+// of two channels, xx, yy and xy; of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
 template <int kCount, bool kCross>
-HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* folded, float* gram) {
+HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* gram) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
@@ -185,12 +163,15 @@ HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* 
     const auto at = [&](int c, int j, int w) { return static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes; };
     for (int c = 0; c < kCount; ++c) {
         for (int j = 0; j < block.height; ++j) {
+            const float* const row = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
             for (int w = 0; w < weights; ++w) {
-                const float* const from = folded + at(c, j, w < even ? 0 : across);
+                const int first = w < even ? 0 : across, count = w < even ? across : block.width - across;
+                const float* const from = row + static_cast<std::size_t>(first) * lanes;
+                const float* const basis = guide.basis[0][weights][w] + first;
                 FloatVec sum = hn::Zero(d);
-                for (int i = 0; i < (w < even ? across : block.width - across); ++i) {
+                for (int i = 0; i < count; ++i) {
                     const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
-                    sum = hn::Add(sum, hn::Mul(AstcNumber(guide.basis[0][weights][w][i]), v));
+                    sum = hn::Add(sum, hn::Mul(AstcNumber(basis[i]), v));
                 }
                 hn::Store(sum, d, rows + at(c, j, w));
             }
@@ -247,11 +228,12 @@ HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec ot
 
 // What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a
 // partition, or of all texels.
-static HWY_NOINLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
-                                         std::size_t end) {
+static HWY_NOINLINE FloatVec CoarseLeave(const float* field, FloatVec field_middle, const float* part, int p,
+                                         FloatVec range, float steps, std::size_t end) {
     const FloatTag d;
     const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
-    const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);
+    const FloatVec over = hn::Div(AstcNumber(1.0f), step);
+    const FloatVec middle = hn::Sub(AstcNumber(0.5f * steps + 0.5f), hn::Mul(field_middle, over));
     FloatVec sum = hn::Zero(d);
     for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
         const FloatVec level = hn::Add(hn::Mul(hn::Load(d, field + k), over), middle);
