@@ -73,10 +73,9 @@ void AstcPlanes(const float* xy, std::size_t count, float scale, float* x, float
     }
 }
 
-// With kOne, the best plan alone is kept.
-template <bool kOne>
-void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
+void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
     const FloatTag d;
+    const bool is_one = guesses.count == 1;  // stays in registers
     AstcShape shape;
     const Extent block = guide.plans->block;
     MeasureShape(group, block.width * block.height, shape);
@@ -106,7 +105,7 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         // The energies inside the space of the grid; the rest is error.
         FloatVec in[2] = {along, shape.across};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows<2, false>(guide, grid.extent.width, channels, rows);
+            if (grid.extent.width != width) ProjectRows(guide, grid.extent.width, channels, 2, false, rows);
             width = grid.extent.width;
             ProjectColumns<2>(guide, grid.extent, rows, in);
         }
@@ -121,7 +120,7 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
             noise = hn::Add(noise, ends);
             if (choice.levels > 0) noise = hn::Min(noise, LevelsLeave(shape, choice.levels, block));
             const FloatVec error = hn::Add(choice.planes == 2 ? two : one, noise);
-            if (kOne) {
+            if (is_one) {
                 best = hn::IfThenElse(hn::Lt(error, least), AstcNumber(static_cast<float>(choice.plan)), best);
                 least = hn::Min(error, least);
             } else {
@@ -129,14 +128,9 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
             }
         }
     }
-    if (!kOne) return;
+    if (!is_one) return;
     hn::Store(least, d, guesses.error);
     hn::Store(best, d, guesses.plan);
-}
-
-void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
-    if (guesses.count == 1) return GuessPlans<true>(guide, group, guesses);
-    GuessPlans<false>(guide, group, guesses);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -232,12 +232,8 @@ void GuessParts(const AstcGuide& guide, AstcPartShape& shape, FloatVec across, i
         if (grid.extent != block) {
             if (grid.extent.width != width) {
                 width = grid.extent.width;
-                if (has_planes) ProjectRows<2, false>(guide, width, channels, rows);
-                if (partitions == 2) {
-                    ProjectRows<2, true>(guide, width, lines, line_rows);
-                } else {
-                    ProjectRows<3, true>(guide, width, lines, line_rows);
-                }
+                if (has_planes) ProjectRows(guide, width, channels, 2, false, rows);
+                ProjectRows(guide, width, lines, partitions, true, line_rows);
             }
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
             if (grid.has_planes) {

@@ -149,57 +149,62 @@ static HWY_NOINLINE void FoldTexels(Extent block, float* channel) {
     for (int i = 0; i < block.width; ++i) fold(i, block.height, block.width);
 }
 
-// Projects the rows of folded channels onto the space that so many weights span. Of two rows that are both sums or both
-// differences, and two channels, `gram` becomes the sum of products, twice if the rows differ. With kCross these are,
-// of two channels, xx, yy and xy; of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
-template <int kCount, bool kCross>
-HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* gram) {
+// Projects the rows of a folded channel onto the space that so many weights span.
+static HWY_NOINLINE void ProjectChannel(const AstcGuide& guide, int weights, const float* channel, float* rows) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
-    const Extent block = guide.plans->block;
-    constexpr int kSums = kCross ? 3 * (kCount - 1) : kCount;
-    const int across = (block.width + 1) / 2, down = (block.height + 1) / 2, even = (weights + 1) / 2;
-    alignas(64) float rows[kCount * 64 * kAstcLanes];
-    const auto at = [&](int c, int j, int w) { return static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes; };
-    for (int c = 0; c < kCount; ++c) {
-        for (int j = 0; j < block.height; ++j) {
-            const float* const row = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
-            for (int w = 0; w < weights; ++w) {
-                const int first = w < even ? 0 : across, count = w < even ? across : block.width - across;
-                const float* const from = row + static_cast<std::size_t>(first) * lanes;
-                const float* const basis = guide.basis[0][weights][w] + first;
-                FloatVec sum = hn::Zero(d);
-                for (int i = 0; i < count; ++i) {
-                    const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
-                    sum = hn::Add(sum, hn::Mul(AstcNumber(basis[i]), v));
-                }
-                hn::Store(sum, d, rows + at(c, j, w));
+    const int width = guide.plans->block.width, across = (width + 1) / 2, even = (weights + 1) / 2;
+    for (int j = 0; j < guide.plans->block.height; ++j, rows += 8 * lanes) {
+        for (int w = 0; w < weights; ++w) {
+            const float* const basis = guide.basis[0][weights][w];
+            FloatVec sum = hn::Zero(d);
+            for (int i = w < even ? 0 : across, end = w < even ? across : width; i < end; ++i) {
+                const FloatVec v = hn::Load(d, channel + static_cast<std::size_t>(j * width + i) * lanes);
+                sum = hn::Add(sum, hn::Mul(AstcNumber(basis[i]), v));
             }
+            hn::Store(sum, d, rows + static_cast<std::size_t>(w) * lanes);
         }
     }
+}
+
+// Sums of products of two projected rows that are both sums or both differences, twice if the rows differ: of a channel
+// with itself or, with kCross, with another one.
+template <bool kCross>
+HWY_NOINLINE void MultiplyRows(Extent block, int weights, const float* a, const float* b, int sums, float* gram) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(weights) * lanes;
+    const int down = (block.height + 1) / 2;
     for (int j = 0; j < block.height; ++j) {
-        for (int k = j < down ? 0 : down; k <= j; ++k) {
-            FloatVec sum[kSums];
-            for (FloatVec& s : sum) s = hn::Zero(d);
-            for (int w = 0; w < weights; ++w) {
-                FloatVec a[kCount], b[kCount];
-                for (int c = 0; c < kCount; ++c) {
-                    a[c] = hn::Load(d, rows + at(c, j, w));
-                    b[c] = hn::Load(d, rows + at(c, k, w));
-                    sum[c] = hn::Add(sum[c], hn::Mul(a[c], b[c]));
-                }
-                for (int c = 1; c < kCount && kCross; ++c) {
-                    for (int e = 0; e < c; ++e) {
-                        FloatVec& s = sum[kCount + e + c - 1];
-                        s = hn::Add(s, hn::Add(hn::Mul(a[e], b[c]), hn::Mul(b[e], a[c])));
-                    }
-                }
+        for (int k = j < down ? 0 : down; k <= j; ++k, gram += static_cast<std::size_t>(sums) * lanes) {
+            const std::size_t first = static_cast<std::size_t>(8 * j) * lanes;
+            const std::size_t second = static_cast<std::size_t>(8 * k) * lanes;
+            FloatVec sum = hn::Zero(d);
+            for (std::size_t w = 0; w < end; w += lanes) {
+                sum = hn::Add(sum, hn::Mul(hn::Load(d, a + first + w), hn::Load(d, b + second + w)));
+                if (kCross) sum = hn::Add(sum, hn::Mul(hn::Load(d, a + second + w), hn::Load(d, b + first + w)));
             }
-            for (int n = 0; n < kSums; ++n) {
-                const float times = (n < kCount ? 2.0f : 1.0f) * (j == k ? 0.5f : 1.0f);
-                hn::Store(hn::Mul(sum[n], AstcNumber(times)), d, gram);
-                gram += lanes;
-            }
+            const float times = (kCross ? 1.0f : 2.0f) * (j == k ? 0.5f : 1.0f);
+            hn::Store(hn::Mul(sum, AstcNumber(times)), d, gram);
+        }
+    }
+}
+
+// Projects the rows of `count` folded channels. `gram` becomes the sums of products, with `cross` of two channels xx,
+// yy and xy, of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
+static HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
+                                     bool cross, float* gram) {
+    alignas(64) float rows[3][64 * kAstcLanes];
+    const Extent block = guide.plans->block;
+    const std::size_t lanes = hn::Lanes(FloatTag());
+    const int sums = cross ? 3 * (count - 1) : count;
+    for (int c = 0; c < count; ++c) {
+        ProjectChannel(guide, weights, channels[c], rows[c]);
+        MultiplyRows<false>(block, weights, rows[c], rows[c], sums, gram + static_cast<std::size_t>(c) * lanes);
+    }
+    for (int c = 1; c < count && cross; ++c) {
+        for (int e = 0; e < c; ++e) {
+            float* const to = gram + static_cast<std::size_t>(count + e + c - 1) * lanes;
+            MultiplyRows<true>(block, weights, rows[e], rows[c], sums, to);
         }
     }
 }
