@@ -182,8 +182,7 @@ void AstcLine<kChannels, kPartitions>::make_ends(Ends& ends) const {
 }
 
 // The endpoint that can be stored and is nearest, or the one below it (way -1) or above it (1).
-template <int kChannels, int kPartitions>
-HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int way) const {
+inline HWY_NOINLINE AstcFloat AstcRounding::first_end(int p, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, base = code;
     if (use_[p] != kOffsets) {
@@ -198,9 +197,7 @@ HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFl
 }
 
 // The same for the other endpoint. An offset depends on the base.
-template <int kChannels, int kPartitions>
-HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcFloat first, AstcFloat end,
-                                                                    int way) const {
+inline HWY_NOINLINE AstcFloat AstcRounding::second_end(int p, AstcFloat first, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, sum = code;
     if (use_[p] != kOffsets) {
@@ -221,8 +218,7 @@ HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcF
 }
 
 // Of the pair that is nearest and the eight pairs around it, that with the least squared error.
-template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
+inline HWY_NOINLINE void AstcRounding::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
     // The error but for a constant: a e0^2 + 2 b e0 e1 + c e1^2 - 2 (x e0 + y e1).
     const AstcFloat b = hn::Sub(s.w, s.ww), c = s.ww;
     const AstcFloat a = hn::Sub(hn::Sub(s.n, s.w), b);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -56,8 +57,8 @@ struct OnePiece {
 
 // Encodes two planes whose values are from 0 to kAstcOne; with one channel, the other one is zeros. `read` gets a row
 // and writes `count` rows of both planes from there on.
-template <class Read>
-void encode_planes(Format format, Effort effort, int channels, Extent extent, std::byte* blocks, Read read) {
+void encode_planes(Format format, Effort effort, int channels, Extent extent, std::byte* blocks,
+                   const std::function<void(int first, int count, float* x, float* y)>& read) {
     const Extent block = format_info(format).block;
     const int across = blocks_across(extent.width, block.width), down = blocks_across(extent.height, block.height);
     std::optional<OnePiece> piece;
