@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -112,9 +113,11 @@ void expect_believed(Extent block) {
             for (int p = 0; p < plan.partitions; ++p)
                 content.offsets |= static_cast<unsigned>(offset[p * lanes + l]) << p;
             content.pattern = pattern.index;
-            for (int w = 0; w < plan.mode.weights(); ++w)
-                content.weights[w % plan.mode.planes][w / plan.mode.planes] =
-                    static_cast<std::uint8_t>(fits.weights[w % plan.mode.planes][w / plan.mode.planes * lanes + l]);
+            for (int p = 0; p < plan.mode.planes; ++p) {
+                for (int w = 0; w < plan.grid->weights; ++w)
+                    content.weights[p][w] =
+                        static_cast<std::uint8_t>(fits.weights[p][w / 4 * lanes + l] >> (8 * (w % 4)));
+            }
             for (int n = 0; n < 4 * plan.partitions; ++n)
                 content.ends[n / 4][n / 2 % 2][n % 2] =
                     static_cast<std::uint8_t>(fits.ends[n / 4][n / 2 % 2][n % 2][l]);
@@ -174,6 +177,18 @@ TEST(AstcEncode, KeepsConstantMapsOfEveryCode) {
         const std::vector<float> again = decoded(format, encoded(format, Effort::fast, xy, extent), extent);
         for (std::size_t k = 0; k < xy.size(); ++k) ASSERT_NEAR(again[k], xy[k], 1.0f / 2048.0f) << k;
     }
+}
+
+TEST(AstcEncode, TakesWhatIsNotANumberForTheLeastValue) {
+    const Extent extent{13, 9};
+    std::vector<float> xy = bumps(extent), least = xy;
+    for (std::size_t k = 0; k < xy.size(); k += k / 3 + 1) {
+        xy[k] = std::numeric_limits<float>::quiet_NaN();
+        least[k] = -1.0f;
+    }
+    for (const Effort effort : kEfforts)
+        EXPECT_EQ(encoded(Format::astc_4x4_unorm, effort, xy, extent),
+                  encoded(Format::astc_4x4_unorm, effort, least, extent));
 }
 
 TEST(AstcEncode, MoreEffortGivesSmallerErrors) {

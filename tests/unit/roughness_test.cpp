@@ -312,6 +312,7 @@ TEST(Roughness, AstcIsLuminanceAndBetterThanTwoChannels) {
     for (int j = 0; j < 203; ++j) {
         for (int i = 0; i < 301; ++i) {
             map.x.at(i, j) = 2.0f * level.at(i, j) - 1.0f;
+            map.y.at(i, j) = 0.0f;
             map.z.at(i, j) = 1.0f;
         }
     }

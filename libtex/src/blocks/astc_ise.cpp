@@ -2,7 +2,7 @@
 
 #include "blocks/astc_ise.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace tex::inline v1 {
 namespace {
@@ -232,50 +232,42 @@ void read_astc_ise(const AstcBits& bits, int at, int range, int count, std::uint
 
 namespace {
 
-// Puts values of few bits one behind the other, 32 bits at once.
-class BitQueue {
-public:
-    BitQueue(AstcBits& bits, int at) : bits_(bits), at_(at) {}
-    void add(int count, unsigned value) {
-        word_ |= std::uint64_t{value} << filled_;
-        filled_ += count;
-        if (filled_ < 32) return;
-        bits_.put(at_, 32, static_cast<unsigned>(word_));
-        at_ += 32;
-        word_ >>= 32;
-        filled_ -= 32;
+// Values whose upper parts have kUpper values, kGroup of which share bits.
+template <int kGroup, unsigned kUpper>
+void write_shared(AstcBits& bits, int at, int lower_bits, int count, const std::uint8_t* values) {
+    const Part* const parts = kUpper == 3 ? kTritParts : kQuintParts;
+    const std::uint8_t* const shared_by = kUpper == 3 ? kSharing.of_trits : kSharing.of_quints;
+    std::uint8_t last[kGroup] = {};
+    for (; count > 0; count -= kGroup, values += kGroup) {
+        const int n = count < kGroup ? count : kGroup;
+        if (n < kGroup) values = std::copy_n(values, n, last) - n;
+        unsigned number = 0;
+        for (int k = kGroup; k-- > 0;) number = number * kUpper + (values[k] >> lower_bits);
+        const std::uint64_t shared = shared_by[number];
+        std::uint64_t all = 0;
+        for (int k = 0; k < kGroup; ++k) {
+            const std::uint64_t lower = values[k] & ((1u << lower_bits) - 1);
+            const std::uint64_t upper = shared & (((1u << parts[k].count) - 1) << parts[k].at);
+            all |= lower << (k * lower_bits + parts[k].at) | upper << ((k + 1) * lower_bits);
+        }
+        const int used = n * lower_bits + parts[n - 1].at + parts[n - 1].count;
+        bits.put(at, used, all);
+        at += used;
     }
-    void finish() { bits_.put(at_, filled_, static_cast<unsigned>(word_)); }
-
-private:
-    AstcBits& bits_;
-    std::uint64_t word_ = 0;
-    int at_, filled_ = 0;
-};
+}
 
 }  // namespace
 
 void write_astc_ise(AstcBits& bits, int at, int range, int count, const std::uint8_t* values) {
     const AstcRange r = kAstcRangeTable[range];
-    BitQueue queue(bits, at);
-    if (r.upper == 1) {
-        for (int k = 0; k < count; ++k) queue.add(r.bits, values[k]);
-        return queue.finish();
+    if (r.upper == 3) return write_shared<5, 3>(bits, at, r.bits, count, values);
+    if (r.upper == 5) return write_shared<3, 5>(bits, at, r.bits, count, values);
+    for (; count >= 8; count -= 8, values += 8, at += 8 * r.bits) {
+        std::uint64_t all = 0;
+        for (int k = 8; k-- > 0;) all = all << r.bits | values[k];
+        bits.put(at, 8 * r.bits, all);
     }
-    const Part* const parts = r.upper == 3 ? kTritParts : kQuintParts;
-    const int group = r.upper == 3 ? 5 : 3;
-    for (int first = 0; first < count; first += group) {
-        const int n = count - first < group ? count - first : group;
-        int number = 0;
-        for (int k = n; k-- > 0;) number = number * r.upper + (values[first + k] >> r.bits);
-        const unsigned shared = r.upper == 3 ? kSharing.of_trits[number] : kSharing.of_quints[number];
-        for (int k = 0; k < n; ++k) {
-            const unsigned lower = values[first + k] & ((1u << r.bits) - 1);
-            const unsigned upper = shared >> parts[k].at & ((1u << parts[k].count) - 1);
-            queue.add(r.bits + parts[k].count, lower | upper << r.bits);
-        }
-    }
-    queue.finish();
+    for (int k = 0; k < count; ++k) bits.put(at + k * r.bits, r.bits, values[k]);
 }
 
 }  // namespace tex::inline v1

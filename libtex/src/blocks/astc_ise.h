@@ -22,9 +22,8 @@ struct AstcBits {
         return static_cast<unsigned>(bits & ((std::uint64_t{1} << count) - 1));
     }
 
-    // Adds bits that are 0 so far.
-    void put(int at, int count, unsigned value) {
-        const std::uint64_t bits = value;
+    // Adds bits that are 0 so far, at most 64.
+    void put(int at, int count, std::uint64_t bits) {
         if (at >= 64) {
             high |= bits << (at - 64);
         } else {

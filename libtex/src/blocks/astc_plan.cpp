@@ -76,6 +76,9 @@ AstcOffsets offsets_of(const std::uint8_t* meanings, int levels) {
         for (float* table : tables) {
             for (int k = 0; k < 64; ++k) table[k] -= 32.0f;
         }
+        for (int k = half + 1; k < half + 64; ++k) {
+            if (!is_offset[k]) made.stored_offset[k] = made.stored_offset[k - 1];
+        }
     }
     return made;
 }
@@ -114,6 +117,12 @@ std::unique_ptr<AstcGrid> make_grid(Extent block, Extent extent) {
         grid.over_squares[w] = 1.0f / squares;
     }
     grid.begin[grid.weights] = next;
+    int placed = 0;
+    for (const int first : {0, 3, 1, 2}) {
+        for (int j = first / 2; j < extent.height; j += 2) {
+            for (int i = first % 2; i < extent.width; i += 2) grid.order[placed++] = j * extent.width + i;
+        }
+    }
     return made;
 }
 
@@ -237,13 +246,9 @@ void store_ends(const AstcPlan& plan, const std::uint8_t ends[2], bool is_offset
         return;
     }
     const AstcOffsets& offsets = *plan.offsets;
-    const int base = ends[0];
+    const int base = ends[0], offset = ends[1] == 255 ? 31 : ends[1] - base;  // decoders limit the sum
     values[0] = offsets.stored_base[base & 0x7f];
-    for (int offset = -32; offset < 32; ++offset) {
-        const int stored = offsets.stored_offset[AstcOffsets::place(base, offset)];
-        // Decoders limit the sum.
-        if (stored >= 0 && std::clamp(base + offset, 0, 255) == ends[1]) values[1] = static_cast<std::uint8_t>(stored);
-    }
+    values[1] = static_cast<std::uint8_t>(offsets.stored_offset[AstcOffsets::place(base, offset)]);
 }
 
 void put_header(const AstcPlan& plan, const AstcContent& content, AstcBits& bits) {

@@ -32,8 +32,10 @@ struct AstcGrid {
     float infill[kAstcMostPlanned][4];
     AstcShare shares[4 * kAstcMostPlanned];  // by weight
     int begin[kAstcMostWeights + 1];         // of a weight in `shares`
-    float over_sum[kAstcMostWeights];        // 1 / the sum of the shares of a weight
-    float over_squares[kAstcMostWeights];    // 1 / the sum of their squares
+    // All weights, most of them after one that shares no texel with them: a processor need not wait for that one.
+    int order[kAstcMostWeights];
+    float over_sum[kAstcMostWeights];      // 1 / the sum of the shares of a weight
+    float over_squares[kAstcMostWeights];  // 1 / the sum of their squares
 };
 
 // The values of weights, from 0 to 64, or of endpoints, from 0 to 255.
@@ -53,7 +55,7 @@ struct AstcOffsets {
     // Of offsets, at 32 + offset, and 64 places farther for bases from 128.
     float nearest_offset[128], lower_offset[128], upper_offset[128];
     std::uint8_t stored_base[128];       // by the lower 7 bits of the base
-    std::int16_t stored_offset[2 * 64];  // by the place of the offset, or -1
+    std::int16_t stored_offset[2 * 64];  // by the place of the offset: the next lower one that can be stored, or -1
 
     static int place(int base, int offset) { return 32 + offset + (base >= 128 ? 64 : 0); }
 };

@@ -123,8 +123,11 @@ void AstcBatch::fit_some(const AstcSteps& steps, Candidate* candidates, int used
         found.content.offsets = candidates[l].offsets;
         if (plan.partitions > 1) found.content.pattern = pattern_of(candidates[l]).index;
         for (int p = 0; p < plan.mode.planes; ++p) {
-            for (int w = 0; w < plan.grid->weights; ++w)
-                found.content.weights[p][w] = static_cast<std::uint8_t>(fits_.weights[p][w * lanes_ + l]);
+            std::uint8_t* to = found.content.weights[p];
+            for (int w = 0; w < plan.grid->weights; w += 4) {
+                const std::uint32_t four = fits_.weights[p][w / 4 * lanes_ + l];
+                for (int k = 0; k < 4; ++k) *to++ = static_cast<std::uint8_t>(four >> (8 * k));
+            }
         }
         for (int p = 0; p < plan.partitions; ++p) {
             for (int n = 0; n < 2 * plan.channels; ++n)
@@ -204,6 +207,10 @@ void AstcBatch::write(int block, std::byte* bytes) {
 void AstcBatch::encode(int count, std::byte* blocks) {
     found_.resize(place(count));
     for (Found& found : found_) found.error = kAstcNone;  // the first candidate sets all else
+    // Vectors may reach past the last block.
+    for (int block = count; block % lanes_ != 0; ++block) {
+        for (int k = 0; k < 2 * texels_ * lanes_; k += lanes_) values(block, 0)[k] = 0.0f;
+    }
     range_.assign(place(count), 0.0f);
     candidates_.clear();
     guess();

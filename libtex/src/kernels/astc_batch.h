@@ -15,10 +15,10 @@
 
 namespace tex::inline v1 {
 
-// Floats that begin at a multiple of 64 bytes.
+// Floats that begin at a multiple of 64 bytes, not set.
 class AlignedFloats {
 public:
-    explicit AlignedFloats(std::size_t count) : room_(count + kAlign / sizeof(float)) {}
+    explicit AlignedFloats(std::size_t count) { room_.reserve(count + kAlign / sizeof(float)); }
     float* data() {
         const auto at = reinterpret_cast<std::uintptr_t>(room_.data());
         return room_.data() + (kAlign - at % kAlign) % kAlign / sizeof(float);
@@ -26,7 +26,7 @@ public:
 
 private:
     static constexpr std::size_t kAlign = 64;
-    WorkingVector<float> room_;
+    WorkingVector<float> room_;  // stays empty: zeros would take time
 };
 
 class AstcBatch {

@@ -2,6 +2,8 @@
 
 #include "kernels/astc_fit.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/astc_fit.cpp"
 #include <hwy/foreach_target.h>
@@ -13,13 +15,25 @@ HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
+HWY_NOINLINE void PackWeights(const float* from, int weights, std::uint32_t* to) {
+    const FloatTag d;
+    const hn::RebindToUnsigned<FloatTag> du;
+    const hn::RebindToSigned<FloatTag> di;
+    for (int first = 0; first < weights; first += 4, to += hn::Lanes(d)) {
+        auto four = hn::Zero(du);
+        for (int w = std::min(first + 4, weights); w-- > first;) {
+            const FloatVec weight = hn::Load(d, from + static_cast<std::size_t>(w) * hn::Lanes(d));
+            four = hn::Or(hn::ShiftLeft<8>(four), hn::BitCast(du, hn::ConvertTo(di, weight)));
+        }
+        hn::Store(four, du, to);
+    }
+}
+
 // Stores a line as a plane: of one channel, or of both.
 template <int kChannels, int kPartitions>
 HWY_INLINE void StoreLine(const AstcLine<kChannels, kPartitions>& line, int weights, int plane, AstcFits& fits) {
     const FloatTag d;
-    const std::size_t end = static_cast<std::size_t>(weights) * hn::Lanes(d);
-    for (std::size_t k = 0; k < end; k += hn::Lanes(d))
-        hn::Store(hn::Load(d, line.best().weights + k), d, fits.weights[plane] + k);
+    PackWeights(line.best().weights, weights, fits.weights[plane]);
     for (int p = 0; p < line.partitions(); ++p) {
         for (int c = 0; c < kChannels; ++c) {
             for (int e = 0; e < 2; ++e) hn::Store(line.best().ends.at[p][c][e], d, fits.ends[p][plane + c][e]);

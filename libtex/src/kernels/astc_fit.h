@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstdint>
+
 #include "blocks/astc_plan.h"
 
 namespace tex::inline v1 {
@@ -24,20 +26,22 @@ struct AstcGroup {
     const float* turn = nullptr;  // 1 where the endpoints to begin with change places
 };
 
-// What fits each block: weights by plane, weight and block; endpoints by partition, channel, end and block.
+// What fits each block: weights by plane, weight and block, four weights to a number, from the lowest bits; endpoints
+// by partition, channel, end and block.
 struct AstcFits {
     alignas(64) float error[kAstcLanes];  // squared, in units of `value`
-    alignas(64) float weights[2][kAstcMostWeights * kAstcLanes];
+    alignas(64) std::uint32_t weights[2][kAstcMostWeights / 4 * kAstcLanes];
     alignas(64) float ends[3][2][2][kAstcLanes];
 };
 
 struct AstcSteps {
-    int insets = 3;          // for each endpoint, places to begin at, of which all pairs are weighed
-    int starts = 1;          // pairs of endpoints to begin with, at most 2
-    int iterations = 1;      // of weights and endpoints
-    int sweeps = 1;          // over the weights of a grid, before and while they are rounded
+    int insets = 3;      // for each endpoint, places to begin at, of which all pairs are weighed
+    int starts = 1;      // pairs of endpoints to begin with, at most 2
+    int iterations = 1;  // of weights and endpoints
+    // Over the weights of a grid, before and while they are rounded. With one, later iterations round at once.
+    int sweeps = 1;
     bool near_ends = false;  // weighs the endpoints beside those of least squares
-    int polishes = 0;        // rounds of trying the endpoints beside the best, each with weights of its own
+    int polishes = 0;        // rounds of trying the endpoints beside the best, each with weights near the best
 };
 
 // The number of blocks that fit_astc() fits: the distance of values of neighbouring texels in the arrays above.

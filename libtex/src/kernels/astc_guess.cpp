@@ -24,37 +24,35 @@ HWY_INLINE FloatVec LevelsLeave(const AstcShape& shape, float levels, Extent blo
     const std::size_t end = static_cast<std::size_t>(block.width * block.height) * hn::Lanes(d);
     FloatVec left = hn::Zero(d);
     for (int c = 0; c < 2; ++c) {
-        const FloatVec range = hn::Sub(shape.greatest[c], shape.least[c]);
-        const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / (levels - 1.0f)));
-        const FloatVec over = hn::Div(AstcNumber(1.0f), step);
+        const FloatVec range = hn::Max(hn::Sub(shape.greatest[c], shape.least[c]), AstcNumber(1e-3f));
+        const FloatVec over = hn::Div(AstcNumber(levels - 1.0f), range), half = AstcNumber(0.5f);
+        const FloatVec first = hn::Sub(half, hn::Mul(shape.least[c], over));
+        FloatVec sum = hn::Zero(d);
         for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
-            const FloatVec place = hn::Mul(hn::Sub(hn::Load(d, shape.v[c] + k), shape.least[c]), over);
-            const FloatVec off = hn::Sub(place, hn::Floor(hn::Add(place, AstcNumber(0.5f))));
-            left = hn::Add(left, hn::Mul(hn::Mul(off, off), hn::Mul(step, step)));
+            const FloatVec place = hn::Add(hn::Mul(hn::Load(d, shape.v[c] + k), over), first);
+            const FloatVec off = hn::Sub(hn::Sub(place, hn::Floor(place)), half);
+            sum = hn::Add(sum, hn::Mul(off, off));
         }
+        const FloatVec step = hn::Mul(range, AstcNumber(1.0f / (levels - 1.0f)));
+        left = hn::Add(left, hn::Mul(sum, hn::Mul(step, step)));
     }
     return left;
 }
 
-void MeasureCoarse(const AstcShape& shape, int texels, FloatVec coarse[kAstcCoarseLevels]) {
-    const FloatTag d;
-    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(texels) * lanes;
-    alignas(64) float line[kAstcMostPlanned * kAstcLanes];
-    for (std::size_t k = 0; k < end; k += lanes) {
-        const FloatVec x = hn::Mul(hn::Load(d, shape.v[0] + k), shape.cos);
-        const FloatVec y = hn::Mul(hn::Load(d, shape.v[1] + k), shape.sin);
-        hn::Store(hn::Sub(hn::Add(x, y), shape.line_middle), d, line + k);
-    }
+// `line` holds the places along the direction in which texels differ most.
+void MeasureCoarse(const AstcShape& shape, const float* line, int texels, FloatVec coarse[kAstcCoarseLevels]) {
+    const std::size_t lanes = hn::Lanes(FloatTag()), end = static_cast<std::size_t>(texels) * lanes;
     for (int l = 0; l < kAstcCoarseLevels; ++l) {
-        const FloatVec leave =
-            CoarseLeave(line, nullptr, 0, hn::Sqrt(shape.line_range), static_cast<float>(l + 1), end);
+        const FloatVec leave = CoarseLeave(line, shape.line_middle, nullptr, 0, hn::Sqrt(shape.line_range),
+                                           static_cast<float>(l + 1), end);
         coarse[l] = CoarseShare(leave, shape.line_range, l, texels);
     }
 }
 
+// What is not a number becomes the least value.
 HWY_INLINE FloatVec AstcPlaneValue(FloatVec n, FloatVec scale) {
     const FloatVec one = AstcNumber(1.0f), minus_one = AstcNumber(-1.0f);
-    const FloatVec low = hn::IfThenElse(hn::Lt(n, minus_one), minus_one, n);
+    const FloatVec low = hn::IfThenElse(hn::Gt(n, minus_one), n, minus_one);
     return hn::Mul(hn::Add(hn::IfThenElse(hn::Lt(one, low), one, low), one), scale);
 }
 
@@ -70,15 +68,14 @@ void AstcPlanes(const float* xy, std::size_t count, float scale, float* x, float
         hn::StoreU(AstcPlaneValue(v, by), d, y + k);
     }
     for (; k < count; ++k) {
-        x[k] = (std::clamp(xy[2 * k], -1.0f, 1.0f) + 1.0f) * scale;
-        y[k] = (std::clamp(xy[2 * k + 1], -1.0f, 1.0f) + 1.0f) * scale;
+        x[k] = (std::min(std::max(-1.0f, xy[2 * k]), 1.0f) + 1.0f) * scale;
+        y[k] = (std::min(std::max(-1.0f, xy[2 * k + 1]), 1.0f) + 1.0f) * scale;
     }
 }
 
-// With kOne, the best plan alone is kept.
-template <bool kOne>
-void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
+void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
     const FloatTag d;
+    const bool is_one = guesses.count == 1;  // stays in registers
     AstcShape shape;
     const Extent block = guide.plans->block;
     MeasureShape(group, block.width * block.height, shape);
@@ -89,27 +86,31 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
         hn::Max(hn::Sub(shape.greatest[0], shape.least[0]), hn::Sub(shape.greatest[1], shape.least[1]));
     hn::Store(widest, d, guesses.widest);
     const auto is_narrow = hn::Le(widest, AstcNumber(kAstcNarrow));
-    alignas(64) float rows[2 * 64 * kAstcLanes];
-    const float* const channels[2] = {shape.v[0], shape.v[1]};
+    alignas(64) float rows[kAstcPairs * 2 * kAstcLanes];
+    // Along the direction in which texels differ most, and across.
+    alignas(64) float turned[2][kAstcMostPlanned * kAstcLanes];
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(block.width * block.height) * lanes;
+    for (std::size_t k = 0; k < end; k += lanes) {
+        const FloatVec x = hn::Load(d, shape.v[0] + k), y = hn::Load(d, shape.v[1] + k);
+        hn::Store(hn::Add(hn::Mul(x, shape.cos), hn::Mul(y, shape.sin)), d, turned[0] + k);
+        hn::Store(hn::Sub(hn::Mul(y, shape.cos), hn::Mul(x, shape.sin)), d, turned[1] + k);
+    }
+    const FloatVec energy = hn::Add(shape.xx, shape.yy), along = hn::Sub(energy, shape.across);
     FloatVec coarse[kAstcCoarseLevels];
-    if (guide.measures_coarse) MeasureCoarse(shape, block.width * block.height, coarse);
+    if (guide.measures_coarse) MeasureCoarse(shape, turned[0], block.width * block.height, coarse);
+    const float* const channels[2] = {turned[0], turned[1]};
+    for (float* channel : turned) FoldTexels(block, channel);
     int width = 0;
     for (const AstcGuide::Grid& grid : guide.grids) {
-        // All energies inside the space of the grid; the rest is error.
-        FloatVec in[3] = {shape.xx, shape.yy, shape.xy};
+        // The energies inside the space of the grid; the rest is error.
+        FloatVec in[2] = {along, shape.across};
         if (grid.extent != block) {
-            if (grid.extent.width != width) ProjectRows<2>(guide, grid.extent.width, channels, rows);
+            if (grid.extent.width != width) ProjectRows(guide, grid.extent.width, channels, 2, false, rows);
             width = grid.extent.width;
             ProjectColumns<2>(guide, grid.extent, rows, in);
         }
-        const FloatVec out_x = hn::Sub(shape.xx, in[0]), out_y = hn::Sub(shape.yy, in[1]);
-        const FloatVec out_xy = hn::Sub(shape.xy, in[2]);
-        const FloatVec two = hn::Max(hn::Add(out_x, out_y), hn::Zero(d));
-        const FloatVec cross = hn::Mul(hn::Mul(shape.cos, shape.sin), hn::Add(out_xy, out_xy));
-        const FloatVec along = hn::Add(
-            hn::Add(hn::Mul(hn::Mul(shape.cos, shape.cos), out_x), hn::Mul(hn::Mul(shape.sin, shape.sin), out_y)),
-            cross);
-        const FloatVec one = hn::Add(hn::Max(along, hn::Zero(d)), shape.across);
+        const FloatVec two = hn::Max(hn::Sub(energy, hn::Add(in[0], in[1])), hn::Zero(d));
+        const FloatVec one = hn::Add(hn::Max(hn::Sub(along, in[0]), hn::Zero(d)), shape.across);
         for (const AstcGuide::Choice& choice : grid.choices) {
             const FloatVec range = choice.planes == 2 ? shape.ranges : shape.line_range;
             const FloatVec ends = hn::IfThenElse(is_narrow, AstcNumber(choice.offsets), AstcNumber(choice.ends));
@@ -119,7 +120,7 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
             noise = hn::Add(noise, ends);
             if (choice.levels > 0) noise = hn::Min(noise, LevelsLeave(shape, choice.levels, block));
             const FloatVec error = hn::Add(choice.planes == 2 ? two : one, noise);
-            if (kOne) {
+            if (is_one) {
                 best = hn::IfThenElse(hn::Lt(error, least), AstcNumber(static_cast<float>(choice.plan)), best);
                 least = hn::Min(error, least);
             } else {
@@ -127,14 +128,9 @@ void GuessPlans(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& gue
             }
         }
     }
-    if (!kOne) return;
+    if (!is_one) return;
     hn::Store(least, d, guesses.error);
     hn::Store(best, d, guesses.plan);
-}
-
-void GuessAstc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
-    if (guesses.count == 1) return GuessPlans<true>(guide, group, guesses);
-    GuessPlans<false>(guide, group, guesses);
 }
 
 }  // namespace HWY_NAMESPACE

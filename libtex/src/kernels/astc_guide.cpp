@@ -63,14 +63,18 @@ void keep_best(std::vector<AstcGuide::Choice>& choices) {
     choices.erase(choices.begin() + static_cast<std::ptrdiff_t>(kept), choices.end());
 }
 
-// Gram and Schmidt's method in double precision.
+// Gram and Schmidt's method in double precision, of sums of weights and their mirror images, then of differences.
 void make_basis(int texels, int weights, float basis[8][8]) {
     double made[8][8] = {};
+    const int even = (weights + 1) / 2;
     for (int w = 0; w < weights; ++w) {
         double* const row = made[w];
+        const int first = w < even ? w : w - even;
         for (int i = 0; i < texels; ++i) {
             const AstcInfill infill = astc_infill(i, texels, weights);
-            row[i] = infill.first == w ? 16 - infill.part : infill.first + 1 == w ? infill.part : 0;
+            const double share = infill.first == first ? 16 - infill.part : infill.first + 1 == first ? infill.part : 0;
+            row[i] += share;
+            row[texels - 1 - i] += w < even ? share : -share;
         }
         for (int other = 0; other < w; ++other) {
             double product = 0;
@@ -82,6 +86,16 @@ void make_basis(int texels, int weights, float basis[8][8]) {
         for (int i = 0; i < texels; ++i) {
             row[i] /= std::sqrt(square);
             basis[w][i] = static_cast<float>(row[i]);
+        }
+    }
+}
+
+void make_pairs(int texels, int weights, const float basis[8][8], float* pairs) {
+    const int even = (weights + 1) / 2, middle = (texels + 1) / 2;
+    for (int j = 0; j < texels; ++j) {
+        for (int k = j < middle ? 0 : middle; k <= j; ++k, ++pairs) {
+            for (int w = j < middle ? 0 : even; w < (j < middle ? even : weights); ++w)
+                *pairs += basis[w][j] * basis[w][k];
         }
     }
 }
@@ -118,8 +132,10 @@ AstcGuide make_astc_guide(const AstcPlans& plans, const AstcReach& reach) {
     }
     for (int weights = 2; weights <= plans.block.width; ++weights)
         make_basis(plans.block.width, weights, guide.basis[0][weights]);
-    for (int weights = 2; weights <= plans.block.height; ++weights)
+    for (int weights = 2; weights <= plans.block.height; ++weights) {
         make_basis(plans.block.height, weights, guide.basis[1][weights]);
+        make_pairs(plans.block.height, weights, guide.basis[1][weights], guide.pairs[weights]);
+    }
     return guide;
 }
 

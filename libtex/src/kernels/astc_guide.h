@@ -15,6 +15,9 @@ inline constexpr float kAstcNarrow = 31.0f;
 // The noise of weights of 2 to 5 levels is measured.
 inline constexpr int kAstcCoarseLevels = 4;
 
+// Pairs of texels that are both up to the middle or both after it.
+inline constexpr int kAstcPairs = 20;
+
 // Plans that blocks of a size may use, in an order that the guesses need.
 struct AstcGuide {
     struct Choice {
@@ -38,7 +41,11 @@ struct AstcGuide {
     std::vector<Grid> of_parts[2];  // by width
     std::vector<AstcPattern> patterns[2];
     // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
+    // The first (weights + 1) / 2 vectors are the same from both ends, the others change their sign.
     float basis[2][9][8][8];
+    // Of the height, by weights: products of two numbers of a vector, summed over the vectors. For numbers up to the
+    // middle, these are the first vectors, for those after it the others.
+    float pairs[9][kAstcPairs];
 };
 
 // How much of it an effort uses.

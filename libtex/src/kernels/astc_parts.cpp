@@ -167,7 +167,8 @@ void MeasureParts(const AstcShape& shape, const float* part, int partitions, int
             hn::Store(AstcInside(hn::Load(d, part + k), p, along, zero), d, made.line[p] + k);
         }
         for (int l = 0; l < kAstcCoarseLevels; ++l) {
-            leave[l] = hn::Add(leave[l], CoarseLeave(made.field[0], part, p, range[0], static_cast<float>(l + 1), end));
+            leave[l] =
+                hn::Add(leave[l], CoarseLeave(made.field[0], zero, part, p, range[0], static_cast<float>(l + 1), end));
         }
     }
     for (int l = 0; l < kAstcCoarseLevels; ++l) made.coarse[l] = CoarseShare(leave[l], made.line_range, l, texels);
@@ -184,11 +185,11 @@ HWY_NOINLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const f
     const FloatVec zero = hn::Zero(d);
     FloatVec sum[6];
     if (partitions == 2) {
-        ProjectColumns<2>(guide, grid, rows, sum);
+        ProjectColumns<3>(guide, grid, rows, sum);
         const FloatVec cross = hn::Abs(sum[2]), inside = hn::Add(hn::Add(sum[0], sum[1]), hn::Add(cross, cross));
         return {hn::Sub(energy, inside), hn::IfThenElseZero(hn::Lt(sum[2], zero), AstcNumber(2.0f))};
     }
-    ProjectColumns<3>(guide, grid, rows, sum);
+    ProjectColumns<6>(guide, grid, rows, sum);
     const FloatVec squares = hn::Add(hn::Add(sum[0], sum[1]), sum[2]);
     FloatVec most = AstcNumber(-1e30f), turns = zero;
     for (int turn = 0; turn < 8; turn += 2) {
@@ -201,9 +202,8 @@ HWY_NOINLINE AstcTurned TurnedLines(const AstcGuide& guide, Extent grid, const f
     return {hn::Sub(energy, hn::Add(squares, hn::Add(most, most))), turns};
 }
 
-// Guesses all plans for a pattern of each block. Keeps the `guesses.count` best.
-void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec across, int partitions,
-                AstcGuesses& guesses) {
+// Guesses all plans for a pattern of each block. Keeps the `guesses.count` best. Folds the texels of the shape.
+void GuessParts(const AstcGuide& guide, AstcPartShape& shape, FloatVec across, int partitions, AstcGuesses& guesses) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
     const Extent block = guide.plans->block;
@@ -217,12 +217,14 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         }
     }
     const FloatVec energies = hn::Add(energy[1], energy[2]);
-    alignas(64) float rows[2 * 64 * kAstcLanes], line_rows[3 * 64 * kAstcLanes];
+    alignas(64) float rows[kAstcPairs * 2 * kAstcLanes], line_rows[kAstcPairs * 6 * kAstcLanes];
     const float* const channels[2] = {shape.field[1], shape.field[2]};
     const float* const lines[3] = {shape.line[0], shape.line[1], shape.line[2]};
     const auto& grids = guide.of_parts[partitions - 2];
     const bool has_planes =
         std::any_of(grids.begin(), grids.end(), [](const AstcGuide::Grid& grid) { return grid.has_planes; });
+    for (int f = 1; f <= 2; ++f) FoldTexels(block, shape.field[f]);
+    for (int p = 0; p < partitions; ++p) FoldTexels(block, shape.line[p]);
     int width = 0;
     for (const AstcGuide::Grid& grid : grids) {
         FloatVec two = hn::Zero(d);
@@ -230,16 +232,12 @@ void GuessParts(const AstcGuide& guide, const AstcPartShape& shape, FloatVec acr
         if (grid.extent != block) {
             if (grid.extent.width != width) {
                 width = grid.extent.width;
-                if (has_planes) ProjectRows<2>(guide, width, channels, rows);
-                if (partitions == 2) {
-                    ProjectRows<2>(guide, width, lines, line_rows);
-                } else {
-                    ProjectRows<3>(guide, width, lines, line_rows);
-                }
+                if (has_planes) ProjectRows(guide, width, channels, 2, false, rows);
+                ProjectRows(guide, width, lines, partitions, true, line_rows);
             }
             one = TurnedLines(guide, grid.extent, line_rows, partitions, energy[0]);
             if (grid.has_planes) {
-                FloatVec in[3];
+                FloatVec in[2];
                 ProjectColumns<2>(guide, grid.extent, rows, in);
                 two = hn::Max(two, hn::Sub(energies, hn::Add(in[0], in[1])));
             }

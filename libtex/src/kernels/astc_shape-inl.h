@@ -130,52 +130,100 @@ static HWY_NOINLINE void MeasureShape(const AstcGroup& group, int texels, AstcSh
     shape.yy = yy;
 }
 
-// Replaces each row of texels of a few channels by its coordinates in the space that so many weights span.
-template <int kCount>
-HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, float* rows) {
+// Replaces the texels of a channel by the sums of them and their mirror images, and those after the middle by the
+// differences, along rows and columns: bases, which are the same from both ends or change their signs, need only half
+// of the texels then.
+static HWY_NOINLINE void FoldTexels(Extent block, float* channel) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
-    const Extent block = guide.plans->block;
-    for (int c = 0; c < kCount; ++c) {
-        for (int j = 0; j < block.height; ++j) {
-            const float* const from = channels[c] + static_cast<std::size_t>(j * block.width) * lanes;
-            for (int w = 0; w < weights; ++w) {
-                FloatVec sum = hn::Zero(d);
-                for (int i = 0; i < block.width; ++i) {
-                    const FloatVec v = hn::Load(d, from + static_cast<std::size_t>(i) * lanes);
-                    sum = hn::Add(sum, hn::Mul(AstcNumber(guide.basis[0][weights][w][i]), v));
-                }
-                hn::Store(sum, d, rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes);
+    const auto fold = [&](int first, int count, int step) {
+        for (int i = 0; i < count / 2; ++i) {
+            float* const from = channel + static_cast<std::size_t>(first + i * step) * lanes;
+            float* const to = channel + static_cast<std::size_t>(first + (count - 1 - i) * step) * lanes;
+            const FloatVec a = hn::Load(d, from), b = hn::Load(d, to);
+            hn::Store(hn::Add(a, b), d, from);
+            hn::Store(hn::Sub(a, b), d, to);
+        }
+    };
+    for (int j = 0; j < block.height; ++j) fold(j * block.width, block.width, 1);
+    for (int i = 0; i < block.width; ++i) fold(i, block.height, block.width);
+}
+
+// Projects the rows of a folded channel onto the space that so many weights span.
+static HWY_NOINLINE void ProjectChannel(const AstcGuide& guide, int weights, const float* channel, float* rows) {
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const int width = guide.plans->block.width, across = (width + 1) / 2, even = (weights + 1) / 2;
+    for (int j = 0; j < guide.plans->block.height; ++j, rows += 8 * lanes) {
+        for (int w = 0; w < weights; ++w) {
+            const float* const basis = guide.basis[0][weights][w];
+            FloatVec sum = hn::Zero(d);
+            for (int i = w < even ? 0 : across, end = w < even ? across : width; i < end; ++i) {
+                const FloatVec v = hn::Load(d, channel + static_cast<std::size_t>(j * width + i) * lanes);
+                sum = hn::Add(sum, hn::Mul(AstcNumber(basis[i]), v));
             }
+            hn::Store(sum, d, rows + static_cast<std::size_t>(w) * lanes);
         }
     }
 }
 
-// The sums of products in the space of a grid, of rows that are projected: of two channels xx, yy and xy; of three xx,
-// yy, zz, xy, xz and yz.
-template <int kCount>
-HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* rows, FloatVec* e) {
+// Sums of products of two projected rows that are both sums or both differences, twice if the rows differ: of a channel
+// with itself or, with kCross, with another one.
+template <bool kCross>
+HWY_NOINLINE void MultiplyRows(Extent block, int weights, const float* a, const float* b, int sums, float* gram) {
     const FloatTag d;
-    const std::size_t lanes = hn::Lanes(d);
-    const int height = guide.plans->block.height;
-    for (int n = 0; n < 3 * (kCount - 1); ++n) e[n] = hn::Zero(d);
-    for (int w = 0; w < grid.width; ++w) {
-        for (int h = 0; h < grid.height; ++h) {
-            FloatVec sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-            for (int j = 0; j < height; ++j) {
-                const FloatVec share = AstcNumber(guide.basis[1][grid.height][h][j]);
-                for (int c = 0; c < kCount; ++c) {
-                    const float* const from = rows + static_cast<std::size_t>((c * 8 + j) * 8 + w) * lanes;
-                    sum[c] = hn::Add(sum[c], hn::Mul(share, hn::Load(d, from)));
-                }
+    const std::size_t lanes = hn::Lanes(d), end = static_cast<std::size_t>(weights) * lanes;
+    const int down = (block.height + 1) / 2;
+    for (int j = 0; j < block.height; ++j) {
+        for (int k = j < down ? 0 : down; k <= j; ++k, gram += static_cast<std::size_t>(sums) * lanes) {
+            const std::size_t first = static_cast<std::size_t>(8 * j) * lanes;
+            const std::size_t second = static_cast<std::size_t>(8 * k) * lanes;
+            FloatVec sum = hn::Zero(d);
+            for (std::size_t w = 0; w < end; w += lanes) {
+                sum = hn::Add(sum, hn::Mul(hn::Load(d, a + first + w), hn::Load(d, b + second + w)));
+                if (kCross) sum = hn::Add(sum, hn::Mul(hn::Load(d, a + second + w), hn::Load(d, b + first + w)));
             }
-            for (int c = 0; c < kCount; ++c) e[c] = hn::Add(e[c], hn::Mul(sum[c], sum[c]));
-            e[kCount] = hn::Add(e[kCount], hn::Mul(sum[0], sum[1]));
-            if (kCount < 3) continue;
-            e[4] = hn::Add(e[4], hn::Mul(sum[0], sum[2]));
-            e[5] = hn::Add(e[5], hn::Mul(sum[1], sum[2]));
+            const float times = (kCross ? 1.0f : 2.0f) * (j == k ? 0.5f : 1.0f);
+            hn::Store(hn::Mul(sum, AstcNumber(times)), d, gram);
         }
     }
+}
+
+// Projects the rows of `count` folded channels. `gram` becomes the sums of products, with `cross` of two channels xx,
+// yy and xy, of three xx, yy, zz, xy, xz and yz; without, those of each channel with itself.
+static HWY_NOINLINE void ProjectRows(const AstcGuide& guide, int weights, const float* const* channels, int count,
+                                     bool cross, float* gram) {
+    alignas(64) float rows[3][64 * kAstcLanes];
+    const Extent block = guide.plans->block;
+    const std::size_t lanes = hn::Lanes(FloatTag());
+    const int sums = cross ? 3 * (count - 1) : count;
+    for (int c = 0; c < count; ++c) {
+        ProjectChannel(guide, weights, channels[c], rows[c]);
+        MultiplyRows<false>(block, weights, rows[c], rows[c], sums, gram + static_cast<std::size_t>(c) * lanes);
+    }
+    for (int c = 1; c < count && cross; ++c) {
+        for (int e = 0; e < c; ++e) {
+            float* const to = gram + static_cast<std::size_t>(count + e + c - 1) * lanes;
+            MultiplyRows<true>(block, weights, rows[e], rows[c], sums, to);
+        }
+    }
+}
+
+// The sums of products in the space of a grid, of rows that are projected.
+template <int kSums>
+HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const float* gram, FloatVec* e) {
+    const FloatTag d;
+    FloatVec sum[kSums];
+    for (FloatVec& s : sum) s = hn::Zero(d);
+    const int half = guide.plans->block.height / 2, pairs = half * (half + 1);
+    for (int k = 0; k < (half + half == guide.plans->block.height ? pairs : pairs + half + 1); ++k) {
+        const FloatVec share = AstcNumber(guide.pairs[grid.height][k]);
+        for (FloatVec& s : sum) {
+            s = hn::Add(s, hn::Mul(share, hn::Load(d, gram)));
+            gram += hn::Lanes(d);
+        }
+    }
+    for (int n = 0; n < kSums; ++n) e[n] = sum[n];
 }
 
 // Of a texel's value, where it is not inside, another one.
@@ -185,11 +233,12 @@ HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec ot
 
 // What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a
 // partition, or of all texels.
-static HWY_NOINLINE FloatVec CoarseLeave(const float* field, const float* part, int p, FloatVec range, float steps,
-                                         std::size_t end) {
+static HWY_NOINLINE FloatVec CoarseLeave(const float* field, FloatVec field_middle, const float* part, int p,
+                                         FloatVec range, float steps, std::size_t end) {
     const FloatTag d;
     const FloatVec step = hn::Mul(hn::Max(range, AstcNumber(1e-3f)), AstcNumber(1.0f / steps));
-    const FloatVec over = hn::Div(AstcNumber(1.0f), step), middle = AstcNumber(0.5f * steps + 0.5f);
+    const FloatVec over = hn::Div(AstcNumber(1.0f), step);
+    const FloatVec middle = hn::Sub(AstcNumber(0.5f * steps + 0.5f), hn::Mul(field_middle, over));
     FloatVec sum = hn::Zero(d);
     for (std::size_t k = 0; k < end; k += hn::Lanes(d)) {
         const FloatVec level = hn::Add(hn::Mul(hn::Load(d, field + k), over), middle);

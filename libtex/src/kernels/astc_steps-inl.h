@@ -44,9 +44,9 @@ void AstcLine<kChannels, kPartitions>::make_ideal(const Ends& ends) {
 }
 
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends) {
+void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends, const float* near) {
     make_ideal(ends);
-    if (!plan_.grid->is_full) return round_grid();
+    if (!plan_.grid->is_full) return round_grid(near);
     for (int k = 0; k < plan_.grid->texels; ++k) {
         const AstcFloat halves = hn::Mul(hn::Load(d_, ideal_ + at(k)), number(128.0f));
         const AstcFloat weight =
@@ -57,10 +57,15 @@ void AstcLine<kChannels, kPartitions>::make_weights(const Ends& ends) {
 }
 
 // Changes each weight of the grid to that which leaves least, given the others: first as a real number, then as one
-// that can be stored. `ideal_` becomes what is left.
+// that can be stored. Weights that are near others begin with those and are rounded at once. `ideal_` becomes what is
+// left.
 template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::round_grid() {
+void AstcLine<kChannels, kPartitions>::round_grid(const float* near) {
     for (int w = 0; w < plan_.grid->weights; ++w) {
+        if (near != nullptr) {
+            hn::Store(hn::Mul(hn::Load(d_, near + at(w)), number(1.0f / 64.0f)), d_, grid_ + at(w));
+            continue;
+        }
         AstcFloat sum = hn::Zero(d_);
         for (int s = plan_.grid->begin[w]; s < plan_.grid->begin[w + 1]; ++s) {
             sum = hn::Add(sum, hn::Mul(number(plan_.grid->shares[s].share),
@@ -76,9 +81,9 @@ void AstcLine<kChannels, kPartitions>::round_grid() {
         }
         hn::Store(left, d_, ideal_ + at(k));
     }
-    for (int sweep = 0; sweep < 2 * steps_.sweeps; ++sweep) {
+    for (int sweep = near != nullptr ? steps_.sweeps : 0; sweep < 2 * steps_.sweeps; ++sweep) {
         const bool rounds = sweep >= steps_.sweeps;
-        for (int w = 0; w < plan_.grid->weights; ++w) change_weight(w, rounds);
+        for (int n = 0; n < plan_.grid->weights; ++n) change_weight(plan_.grid->order[n], rounds);
     }
     for (int w = 0; w < plan_.grid->weights; ++w) {
         hn::Store(hn::Mul(hn::Load(d_, grid_ + at(w)), number(64.0f)), d_, grid_ + at(w));
@@ -177,8 +182,7 @@ void AstcLine<kChannels, kPartitions>::make_ends(Ends& ends) const {
 }
 
 // The endpoint that can be stored and is nearest, or the one below it (way -1) or above it (1).
-template <int kChannels, int kPartitions>
-HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFloat end, int way) const {
+inline HWY_NOINLINE AstcFloat AstcRounding::first_end(int p, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, base = code;
     if (use_[p] != kOffsets) {
@@ -193,9 +197,7 @@ HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::first_end(int p, AstcFl
 }
 
 // The same for the other endpoint. An offset depends on the base.
-template <int kChannels, int kPartitions>
-HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcFloat first, AstcFloat end,
-                                                                    int way) const {
+inline HWY_NOINLINE AstcFloat AstcRounding::second_end(int p, AstcFloat first, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, sum = code;
     if (use_[p] != kOffsets) {
@@ -216,8 +218,7 @@ HWY_NOINLINE AstcFloat AstcLine<kChannels, kPartitions>::second_end(int p, AstcF
 }
 
 // Of the pair that is nearest and the eight pairs around it, that with the least squared error.
-template <int kChannels, int kPartitions>
-void AstcLine<kChannels, kPartitions>::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
+inline HWY_NOINLINE void AstcRounding::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
     // The error but for a constant: a e0^2 + 2 b e0 e1 + c e1^2 - 2 (x e0 + y e1).
     const AstcFloat b = hn::Sub(s.w, s.ww), c = s.ww;
     const AstcFloat a = hn::Sub(hn::Sub(s.n, s.w), b);
@@ -300,7 +301,7 @@ bool AstcLine<kChannels, kPartitions>::polish() {
                 AstcFloat* const end = ends.at[p][c];
                 end[0] = first_end(p, end[0], way / 3 - 1);
                 end[1] = second_end(p, end[0], end[1], way % 3 - 1);
-                make_weights(ends);
+                make_weights(ends, best_.weights);
                 is_better = keep(ends) || is_better;
             }
         }
