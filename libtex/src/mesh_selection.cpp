@@ -165,6 +165,16 @@ void choose_uvs(const Mesh& mesh, const MeshSelection& selection, Choice& choice
     }
 }
 
+// Faces of OBJ without normals are a part of their own.
+Error without_normals(const Choice& choice, const MeshPart& part, const std::string& name) {
+    std::size_t without = 0, with = 0;  // triangles
+    for (const MeshPart* other : choice.parts)
+        if (other->mesh == part.mesh) (other->normals.empty() ? without : with) += other->triangles();
+    const std::string some = std::to_string(without) + " of " + std::to_string(without + with) + " triangles with ";
+    return unfit(name + "has " + (with > 0 ? some + "corners that have no normal" : "no normals") +
+                 ", which tangent space needs");
+}
+
 Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection, Choice& choice) {
     choice.remarks = mesh.remarks;
     choose_uvs(mesh, selection, choice);
@@ -172,7 +182,7 @@ Result<void> choose_attributes(const Mesh& mesh, const MeshSelection& selection,
     bool all_have_tangents = true;
     for (const MeshPart* part : choice.parts) {
         const std::string name = part->name.empty() ? "" : quoted(part->name) + " ";
-        if (part->normals.empty()) return unfit(name + "has no normals, which tangent space needs");
+        if (part->normals.empty()) return without_normals(choice, *part, name);
         if (part->tangents.empty()) {
             all_have_tangents = false;
             if (selection.tangents == TangentSource::file)
@@ -281,14 +291,6 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
     return joined;
 }
 
-// The numbers of the names, which their stems have or get.
-std::vector<int> numbered(const std::vector<std::string>& names, PartSide side, std::map<std::string, int>& numbers) {
-    std::vector<int> found;
-    for (const std::string& name : names)
-        found.push_back(numbers.try_emplace(stem_of_part(name, side), static_cast<int>(numbers.size())).first->second);
-    return found;
-}
-
 // Drops those without triangles.
 void drop_empty(std::vector<SelectedPiece>& pieces, std::size_t triangles) {
     for (std::size_t k = pieces.size(); k-- > 0;) {
@@ -388,8 +390,8 @@ Result<UvTiles> tiles_of(const SelectedPart& selected) {
 MatchedNames match_names(const std::vector<std::string>& low, const std::vector<std::string>& high) {
     std::map<std::string, int> numbers;
     MatchedNames matched;
-    matched.low = numbered(low, PartSide::low, numbers);
-    matched.high = numbered(high, PartSide::high, numbers);
+    matched.low = numbered_names(low, PartSide::low, numbers);
+    matched.high = numbered_names(high, PartSide::high, numbers);
     matched.lone_low = lone_names(low, matched.low, matched.high);
     matched.lone_high = lone_names(high, matched.high, matched.low);
     return matched;

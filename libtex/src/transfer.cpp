@@ -106,7 +106,7 @@ bool has_area(const RayGroups& groups) {
     return false;
 }
 
-Error no_hit(const TangentSpace& low, const RayGroups& groups, const TransferredMaps& result) {
+Error no_hit(const TangentSpace& low, const RayGroups& groups, bool has_cage, const TransferredMaps& result) {
     const std::string reach = "rays reach " + plain(result.front) + " in front and " + plain(result.back) + " behind";
     const double distance = distance_between(low.part, groups);
     if (!has_area(groups)) return {ErrorCode::bad_option, low.file, "no triangle of the high mesh has an area"};
@@ -118,10 +118,12 @@ Error no_hit(const TangentSpace& low, const RayGroups& groups, const Transferred
                     ": both must be in the same place and unit"};
     }
     if (result.behind > 0) {
-        return {
-            ErrorCode::bad_option, low.file,
-            "no ray hits the high mesh from outside: the triangles that rays meet face the other way. Turn them, or "
-            "let back faces count"};
+        const std::string cage =
+            has_cage ? "The cage may lie inside the high mesh: push it outwards. If the high mesh is inside out, turn "
+                       "its triangles, or let back faces count"
+                     : "Turn them, or let back faces count";
+        return {ErrorCode::bad_option, low.file,
+                "no ray hits the high mesh from outside: the triangles that rays meet face the other way. " + cage};
     }
     return {ErrorCode::bad_option, low.file, "no ray hits the high mesh, while " + reach + ": rays must reach farther"};
 }
@@ -205,7 +207,7 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     };
     if (auto done = parallel_for(execution, coverage->strips(), 1, run, {0.1, 0.9}); !done) return done.error();
     if (result.covered == 0) return Error{ErrorCode::bad_option, low.file, "its triangles cover no texel of the map"};
-    if (result.covered == result.missed) return no_hit(low, *groups, result);
+    if (result.covered == result.missed) return no_hit(low, *groups, inputs.cage != nullptr, result);
     strips.finish();
     return result;
 }

@@ -195,6 +195,17 @@ TEST_F(BuildNormals, PruneRemovesOutputsOfVanishedInputsAndNothingElseDoes) {
     EXPECT_EQ(summary("--dry-run"),
               "remove out/art/wall_n.dds\nremove out/art/wall_ue.ktx2\n0 to make, 2 up to date, 2 to remove\n");
     EXPECT_TRUE(scratch_.has("out/art/wall_n.dds"));
+    // With --json, all lines are JSON.
+    const Ran listed = run(scratch_, "build-normals", {"--prune", "--no-sync", "--dry-run", "--json"});
+    std::vector<std::string> obsolete;
+    for (const std::string& line : lines_of(listed.out)) {
+        const auto json = nlohmann::json::parse(line, nullptr, false);
+        ASSERT_FALSE(json.is_discarded()) << line;
+        EXPECT_EQ(json["schema"], 1) << line;
+        if (json.value("status", "") == "obsolete") obsolete.push_back(json["output"].dump());
+    }
+    EXPECT_EQ(obsolete, (std::vector<std::string>{R"(["out/art/wall_n.dds"])", R"(["out/art/wall_ue.ktx2"])"}));
+    EXPECT_EQ(nlohmann::json::parse(lines_of(listed.out).back())["removed"], 2);
     // A file that something else has changed is kept, and does not count.
     const std::string made = scratch_.read("out/art/wall_ue.ktx2");
     scratch_.write("out/art/wall_ue.ktx2", "changed");

@@ -93,25 +93,35 @@ TEST_F(TransferMaps, WritesOcclusionBentNormalsAndThickness) {
 
 // Two sheets that lie on each other, and a part that only one of the meshes has.
 TEST_F(TransferMaps, IsGuidedByCagesSkewAndOffsets) {
-    std::string cage;  // without UVs and normals
-    for (const std::string& line : lines_of(kSheetObj)) {
-        if (line.starts_with("v ")) {
-            const std::size_t z = line.rfind(' ');
-            cage += line.substr(0, z + 1) + std::to_string(std::stod(line.substr(z)) + 0.5) + "\n";
-        } else if (line.starts_with("f ")) {
-            std::string corners;
-            for (std::size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1))
-                corners += " " + line.substr(at + 1, line.find('/', at) - at - 1);
-            cage += "f" + corners + "\n";
+    const auto cage_at = [](double height) {  // without UVs and normals
+        std::string cage;
+        for (const std::string& line : lines_of(kSheetObj)) {
+            if (line.starts_with("v ")) {
+                const std::size_t z = line.rfind(' ');
+                cage += line.substr(0, z + 1) + std::to_string(std::stod(line.substr(z)) + height) + "\n";
+            } else if (line.starts_with("f ")) {
+                std::string corners;
+                for (std::size_t at = line.find(' '); at != std::string::npos; at = line.find(' ', at + 1))
+                    corners += " " + line.substr(at + 1, line.find('/', at) - at - 1);
+                cage += "f" + corners + "\n";
+            }
         }
-    }
-    scratch_.write("sheet_cage.obj", cage);
+        return cage;
+    };
+    scratch_.write("sheet_cage.obj", cage_at(0.5));
+    scratch_.write("sunk_cage.obj", cage_at(-0.5));
     const auto caged = reports({"sheet.obj", "sheet.obj", "-o", "a.png", "--cage", "{stem}_cage.obj"});
     EXPECT_NEAR(caged["reach"]["front"].get<double>(), 0.5, 1e-6);
     EXPECT_EQ(caged["missed"]["texels"], 0);
     does({"sheet.obj", "sheet.obj", "-o", "a.png", "--cage", "sheet.obj", "--back", "1"});
     refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "crate_low.glb"}, 4,
             "crate_low.glb: has 12 triangles, but the low mesh has 8: a cage is the low mesh, pushed outwards");
+    // From a cage inside of it, rays meet the high mesh from behind.
+    refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "sunk_cage.obj", "--quiet"}, 4,
+            "The cage may lie inside");
+    EXPECT_NE(go({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "sunk_cage.obj", "--backfaces"})
+                  .err.find("if it is not, move the cage outwards there"),
+              std::string::npos);
     refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "none.obj"}, 3, "none.obj: ");
     refuses({"sheet.obj", "sheet.obj", "-o", "sheet_cage.obj", "--cage", "sheet_cage.obj"}, 2, "sheet_cage.obj");
     refuses({"sheet.obj", "sheet.obj", "-o", "b.png", "--cage", "c.obj", "--front", "1"}, 2, "--cage decides");

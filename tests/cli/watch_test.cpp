@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/meshes.h"
 #include "cli/program.h"
@@ -323,6 +324,20 @@ steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", extent = "32", 
     fs::remove_all(scratch_.path("out"));
     ASSERT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
     EXPECT_TRUE(scratch_.read("out/h.1002.exr") == watched);
+}
+
+// As every run with --json, it ends with a line that says so.
+TEST_F(BuildNormalsWatch, JsonEndsWithALineOfTheInterruption) {
+    Background builder(scratch_, "build-normals", {"--watch", "--no-sync", "--json"});
+    ASSERT_TRUE(prints(builder, "\"interrupted\":false"));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    builder.send(SIGINT);
+    const Ran ran = builder.wait();
+    EXPECT_EQ(ran.code, 128 + SIGINT);
+    const auto last = nlohmann::json::parse(lines_of(ran.out).back());
+    EXPECT_EQ(last["interrupted"], true);
+    EXPECT_EQ(last["made"], 0);
+    EXPECT_EQ(last["untried"], 0);
 }
 
 TEST_F(BuildNormalsWatch, VanishedInputsArePruned) {

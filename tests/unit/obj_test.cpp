@@ -62,6 +62,28 @@ TEST(Obj, MakesPartsOfObjectsAndMaterials) {
     EXPECT_EQ(mesh->nodes.size(), 2u);
 }
 
+TEST(Obj, FacesWithoutNormalsAreAPartOfTheirOwn) {
+    const auto mesh = parse_with_quad("f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4\n");
+    ASSERT_TRUE(mesh) << mesh.error().reason;
+    ASSERT_EQ(mesh->parts.size(), 2u);
+    EXPECT_EQ(mesh->parts[0].normals.size(), 3u);
+    EXPECT_TRUE(mesh->parts[1].normals.empty());
+    EXPECT_EQ(mesh->parts[1].primitive, 1);
+    const auto selected = select_part(*mesh, {});
+    ASSERT_FALSE(selected);
+    EXPECT_EQ(selected.error().reason,
+              "has 1 of 2 triangles with corners that have no normal, which tangent space needs");
+}
+
+TEST(Obj, ReadsLinesOfOldMacs) {
+    std::string text = "# CR alone\rv 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 \\\r3\r";
+    EXPECT_TRUE(is_obj(text));
+    const auto mesh = parse_obj(text);
+    ASSERT_TRUE(mesh) << mesh.error().reason;
+    EXPECT_EQ(mesh->parts.at(0).triangles(), 1u);
+    EXPECT_EQ(parse_obj("v 0 0 0\rv 1\r").error().reason, "line 2: \"\" is not a finite number");
+}
+
 TEST(Obj, RefusesDamageWithTheLine) {
     const std::pair<const char*, const char*> cases[] = {
         {"v 1 2\n", "line 1: \"\" is not a finite number"},

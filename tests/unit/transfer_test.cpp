@@ -258,6 +258,7 @@ TEST(Transfer, RefusesWhatDoesNotFit) {
     const auto behind = transfer({8, 8}, {low, *tangents}, only(inside_out(low)));
     ASSERT_FALSE(behind);
     EXPECT_NE(behind.error().reason.find("face the other way"), std::string::npos) << behind.error().reason;
+    EXPECT_EQ(behind.error().reason.find("cage"), std::string::npos) << behind.error().reason;
     MeshPart point = low;
     for (Float2& uv : point.uvs[0]) uv = {0.5f, 0.5f};
     EXPECT_EQ(transfer({8, 8}, {point, *tangents}, only(low)).error().reason,

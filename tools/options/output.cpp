@@ -59,12 +59,14 @@ int parse_zstd(const std::string& text) {
 
 }  // namespace
 
-std::string default_encodings() {
+std::string default_encodings(Encoding of_textures) {
     std::string text;
     for (const Named<Encoding>& encoding : kEncodingNames) {
         std::vector<std::string> containers;
         for (const Named<Container>& container : kContainerNames) {
-            if (default_encoding(container.value) == encoding.value) containers.emplace_back(container.name);
+            Encoding held = default_encoding(container.value);
+            if (held == default_encoding(Container::dds)) held = of_textures;
+            if (held == encoding.value) containers.emplace_back(container.name);
         }
         if (!containers.empty())
             text += fmt::format("{}{} in {}", text.empty() ? "" : "; ", encoding.name, join(containers));

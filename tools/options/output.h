@@ -70,7 +70,7 @@ private:
 };
 
 // The library's default encoding for each container: "dxt5nm in dds, ktx2; rgb8 in png, tga, ...".
-[[nodiscard]] std::string default_encodings();
+[[nodiscard]] std::string default_encodings(Encoding of_textures = Encoding::dxt5nm);
 
 // Puts extent, levels, format, y and bytes into the job's report, and what optimisation has done, if there was any.
 void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack, std::size_t bytes,

@@ -41,8 +41,17 @@ double percent_of(std::int64_t part, std::int64_t whole) {
     return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+constexpr double kLeastReach = 1e-6;  // of the diagonal: less is rounding
+
 // Not less than the reach: what is printed as a remedy must suffice.
-double enough(double reach, double diagonal) { return std::max(1.001 * reach, 1e-6 * diagonal); }
+double enough(double reach, double diagonal) { return std::max(1.001 * reach, kLeastReach * diagonal); }
+
+// What to do about missed texels if guides decide where rays start. `remedy` is about their starts.
+std::string advice_of(const TransferredMaps& maps, const std::string& remedy) {
+    if (maps.needed_back <= maps.back) return remedy;
+    const std::string back = fmt::format("raise --back to {:.4g}", enough(maps.needed_back, maps.diagonal));
+    return maps.needed_front <= kLeastReach * maps.diagonal ? back : remedy + ", and " + back;
+}
 
 }  // namespace
 
@@ -127,9 +136,8 @@ void RayOptions::judge_missed(Job& job, const TransferredMaps& maps, const std::
     if (maps.missed > maps.hopeless && !remedy.empty()) {
         sentence += fmt::format(
             "; rays that reach {:.4g} in front and {:.4g} behind would hit 95 % of those that a "
-            "longer ray can hit: {}{}",
-            enough(maps.needed_front, maps.diagonal), enough(maps.needed_back, maps.diagonal), remedy,
-            maps.needed_back > maps.back ? ", and --back" : "");
+            "longer ray can hit: {}",
+            enough(maps.needed_front, maps.diagonal), enough(maps.needed_back, maps.diagonal), advice_of(maps, remedy));
     } else if (maps.missed > maps.hopeless && farther) {
         sentence += fmt::format("; --front {:.4g} --back {:.4g} would hit 95 % of those that a longer ray can hit",
                                 enough(std::max(maps.needed_front, maps.front), maps.diagonal),
@@ -162,9 +170,12 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps, const std:
     if (maps.overlaps > 0) job.warn(overlaps + "; the first one decides");
     judge_missed(job, maps, remedy);
     if (maps.behind > 0) {
-        job.warn(fmt::format("{} rays meet only triangles that face the other way; {}", maps.behind,
-                             transfer_.backfaces ? "they count, because of --backfaces"
-                                                 : "--backfaces lets them count, if the high mesh is inside out"));
+        std::string sentence =
+            fmt::format("{} rays meet only triangles that face the other way; {}", maps.behind,
+                        transfer_.backfaces ? "they count, because of --backfaces, for a high mesh that is inside out"
+                                            : "--backfaces lets them count, if the high mesh is inside out");
+        if (!remedy.empty()) sentence += "; if it is not, " + remedy;
+        job.warn(std::move(sentence));
     }
     if (maps.singular > 0) {
         job.warn(

@@ -13,6 +13,7 @@
 #include "decoders.h"
 #include "open_input.h"
 #include "tiff_tags.h"
+#include "tiff_uneven.h"
 
 namespace tex::reader {
 namespace {
@@ -92,6 +93,9 @@ std::string unsupported_reason(TIFF* tiff, const Layout& layout) {
         return "complex numbers are not read";
     if (TIFFIsCODECConfigured(layout.compression) == 0)
         return "TIFF compression " + std::to_string(layout.compression) + " is not supported";
+    const bool is_log = layout.photometric == PHOTOMETRIC_LOGL || layout.photometric == PHOTOMETRIC_LOGLUV;
+    if (is_log && layout.compression != COMPRESSION_SGILOG && layout.compression != COMPRESSION_SGILOG24)
+        return "LogLuv colours that are not compressed as such are not supported";
     char text[1024] = {};
     if (layout.needs_rgb() && TIFFRGBAImageOK(tiff, text) == 0) return text;
     if (layout.is_palette() && (layout.bits > 16 || layout.format != SAMPLEFORMAT_UINT))
@@ -234,6 +238,8 @@ bool decode_tiff(const Task& task, ReaderHeader& header) {
     TIFFSetErrorHandler(keep_error);
     first_error().clear();
     const std::unique_ptr<TIFF, Closer> file(open_tiff_input());
+    if (!file && has_uneven_samples())
+        return refuse(header, ErrorCode::unsupported, "samples of different bits or formats are not supported");
     if (!file) return refuse_damaged(header);
     TIFF* const tiff = file.get();
     const Layout layout = layout_of(tiff);

@@ -35,15 +35,20 @@ std::string title_of(const CheckReport& report) {
     return report.map.empty() ? report.file : report.file + ": " + report.map;
 }
 
+std::string statement_of(const Finding& finding) {
+    std::string_view sentence = finding.rule->sentence;
+    sentence.remove_suffix(1);  // its full stop
+    return fmt::format("{}: {}.", sentence, finding.message);
+}
+
 std::string findings_text(const CheckReport& report, const Requirements& require) {
     std::string text, told;  // the command that was printed before
     for (const Finding& finding : report.findings) {
         const Rule& rule = *finding.rule;
-        std::string_view sentence = rule.sentence;
-        sentence.remove_suffix(1);
-        text += fmt::format("{}: {} {} {}: {}: {}\n", printable(title_of(report)),
-                            name_of(kSeverityNames, finding.severity), rule.id, rule.name, sentence,
-                            printable(finding.message));
+        std::string statement = statement_of(finding);
+        statement.pop_back();
+        text += fmt::format("{}: {} {} {}: {}\n", printable(title_of(report)),
+                            name_of(kSeverityNames, finding.severity), rule.id, rule.name, printable(statement));
         const Fix fix = fix_of(finding, report, require);
         if (fix.text.empty()) continue;
         if (fix.is_command && fix.text == told) {
@@ -59,7 +64,7 @@ std::string findings_text(const CheckReport& report, const Requirements& require
 std::string pair_text(const CheckReport& report) {
     if (!report.pair) return {};
     const PairEvidence& pair = *report.pair;
-    return fmt::format("{}: fits the height map with correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
+    return fmt::format("{}: best fit to the height map: correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
                        printable(title_of(report)), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
                        pair.offset_y);
 }

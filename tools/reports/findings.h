@@ -14,6 +14,9 @@ namespace tex::cli {
 // The file, and the map if it is one of a model: "car.glb: Paint: paint_n.png".
 [[nodiscard]] std::string title_of(const CheckReport& report);
 
+// "Green points ...: green points down instead of up."
+[[nodiscard]] std::string statement_of(const Finding& finding);
+
 // One line for each finding, with its fix below: "maps/a.dds: error N401 wrong-y: Green points ...: green points down
 // instead of up".
 [[nodiscard]] std::string findings_text(const CheckReport& report, const Requirements& require);

@@ -191,8 +191,8 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data) {
         return {
-            "The fix would drop what the other channels hold. unpack-normals --alpha-out or --blue-out writes that to "
-            "a separate file; pack-normals --format rgba8 keeps alpha."};
+            "No command is printed, because it would lose what the other channels hold. Save that first with "
+            "unpack-normals --alpha-out or --blue-out; pack-normals --format rgba8 keeps alpha."};
     }
     if (!is_clear(id, report, require)) {
         return {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
+#include "reports/findings.h"
 #include "reports/fixes.h"
 
 namespace tex::cli {
@@ -45,8 +46,8 @@ std::string github_text(const CheckReport& report, const Requirements& require) 
     if (report.error && report.findings.empty())
         text += line_of("error", report.file, "check-normals", printable(report.error->reason));
     for (const Finding& finding : report.findings) {
-        std::string message = fmt::format("{}{}{} {}.", printable(report.map), report.map.empty() ? "" : ": ",
-                                          finding.rule->sentence, printable(finding.message));
+        std::string message = fmt::format("{}{}{}", printable(report.map), report.map.empty() ? "" : ": ",
+                                          printable(statement_of(finding)));
         const Fix fix = fix_of(finding, report, require);
         if (!fix.text.empty()) message += fmt::format("\n{}{}", fix.is_command ? "Fix: " : "", fix.text);
         text += line_of(command_of(finding.severity), report.file,

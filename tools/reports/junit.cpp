@@ -49,8 +49,7 @@ std::string test_case(const JudgedReport& judged) {
     } else if (!failing.findings.empty()) {
         const Finding& first = failing.findings.front();
         xml += fmt::format("      <failure type=\"{}\" message=\"{}\">{}</failure>\n", first.rule->id,
-                           escaped(fmt::format("{} {}", first.rule->sentence, first.message)),
-                           escaped(findings_text(failing, require)));
+                           escaped(statement_of(first)), escaped(findings_text(failing, require)));
     }
     if (!other.findings.empty() && !report.error) {
         xml += fmt::format("      <system-out>{}</system-out>\n", escaped(findings_text(other, require)));

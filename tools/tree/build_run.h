@@ -28,6 +28,9 @@ struct BuildTotals {
     std::atomic<std::size_t> made{0}, cached{0}, current{0}, failed{0}, pruned{0};
 };
 
+// The last line of --json.
+ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, bool is_interrupted, Console& console);
+
 class BuildRun {
 public:
     BuildRun(const std::vector<Recipe>& recipes, const WorkList& work, const BuildOptions& options,

@@ -216,6 +216,7 @@ void BuildRun::prune() {
 // Removes the files of an output. Returns false if the state must go on to know them.
 bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& current) {
     bool is_gone = true, removes = false;
+    Json obsolete = Json::array();
     for (const auto& [file, digest] : output.files) {
         const std::string path = contents_.path(file);
         const Result<Digest> now = contents_.digest(file);
@@ -227,7 +228,8 @@ bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& c
         } else if (!is_ours) {
             console_.warning(fmt::format("{} is not removed: something else has changed it", path));
         } else if (options_.dry_run) {
-            std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
+            if (!running_.json) std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
+            obsolete.push_back(file);
             is_gone = false;
             removes = true;
         } else if (!remove_file(path)) {
@@ -238,6 +240,8 @@ bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& c
         }
     }
     if (removes) ++totals_.pruned;
+    if (running_.json && !obsolete.empty())
+        std::ignore = console_.print(to_report_line({{"output", std::move(obsolete)}, {"status", "obsolete"}}));
     return is_gone;
 }
 
@@ -304,17 +308,20 @@ ExitCode BuildRun::run() {
     return std::max(code, print_summary(false));
 }
 
+ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, bool is_interrupted, Console& console) {
+    return console.print(to_report_line({{"made", totals.made.load()},
+                                         {"current", totals.current.load()},
+                                         {"cached", totals.cached.load()},
+                                         {"failed", totals.failed.load()},
+                                         {"untried", untried},
+                                         {"removed", totals.pruned.load()},
+                                         {"interrupted", is_interrupted}}));
+}
+
 // Prints what happened to the textures: a line of JSON with --json, a line for people without.
 ExitCode BuildRun::print_summary(bool is_interrupted) {
-    if (running_.json) {
-        return console_.print(to_report_line({{"made", totals_.made.load()},
-                                              {"current", totals_.current.load()},
-                                              {"cached", totals_.cached.load()},
-                                              {"failed", totals_.failed.load()},
-                                              {"untried", work_.tasks.size() - finished_.load()},
-                                              {"removed", totals_.pruned.load()},
-                                              {"interrupted", is_interrupted}}));
-    }
+    if (running_.json)
+        return print_json_summary(totals_, work_.tasks.size() - finished_.load(), is_interrupted, console_);
     if (running_.quiet) return ExitCode::done;
     std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),
                                       options_.dry_run ? "to make" : "made", totals_.current.load());

@@ -17,6 +17,7 @@
 #include "cli/file_status.h"
 #include "cli/usage_error.h"
 #include "files/path_names.h"
+#include "tree/build_run.h"
 #include "tree/file_events.h"
 
 namespace tex::cli {
@@ -297,7 +298,10 @@ ExitCode Watch::run() {
         wait_until_due();
     }
     if (failure_) console_.error(failure_->message());
-    if (!host.interruption().empty()) host.end_interrupted();
+    if (!host.interruption().empty()) {  // between two builds
+        if (running_.json) std::ignore = print_json_summary({}, 0, true, console_);
+        host.end_interrupted();
+    }
     return ExitCode::io;
 }
 

@@ -157,7 +157,8 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 //        triangles alone; else Mesh::remarks says if one was ignored where it might change UVs, normals or tangents.
 //        Colours of vertices are COLOR_0 without its alpha, as floats or normalised integers.
 // OBJ    v, vt, vn, f, o, usemtl. Polygons become fans around their first corner. Faces of the same object and material
-//        are one part; those of them without UVs are another. A part has normals if all of its corners have them.
+//        are one part; those of them without UVs, or with a corner without a normal, are others. Lines end with LF, CR
+//        and LF, or CR alone.
 //        Colours are the three numbers after a position ("v x y z r g b"), which many programs write; a part has them
 //        if all of its corners do. All else is ignored.
 // other  What Assimp reads from one file: FBX, PLY, Collada, STL and more. As Assimp has crashed on damaged files, it

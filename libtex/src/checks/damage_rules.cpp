@@ -190,6 +190,11 @@ bool stands_out(const JpegTrace& trace, const Stored& stored) {
     });
 }
 
+// Inside of blocks there may be next to no steps.
+std::string times(double ratio) {
+    return ratio > 1000.0 ? "more than 1000 times" : decimal(ratio, ratio < 10.0 ? 2 : 0) + " times";
+}
+
 void check_blocks(const CheckContext& context, const Traces& traces, Findings& findings) {
     const auto add = [&](std::string_view id, std::string message, double figure, std::string_view unit) {
         Finding& finding = findings.add(id, std::move(message));
@@ -200,7 +205,7 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
     if (const FormatInfo info = format_info(context.texture.format); info.has_blocks()) {
         const double ratio = traces.grid_ratio;
         if (ratio > kBlockRatio && grid_excess(context.stored, info.block.width) > kBlockExcess) {
-            add("N306", "steps between 4x4 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
+            add("N306", "steps between 4x4 blocks are " + times(ratio) + " those inside", ratio, "ratio");
         }
         return;
     }
@@ -220,7 +225,7 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
     }
     const double ratio = grid_ratio(context.stored, 8);
     if (ratio > thresholds::kJpegRatio)
-        add("N304", "steps between 8x8 blocks are " + decimal(ratio, 2) + " times those inside", ratio, "ratio");
+        add("N304", "steps between 8x8 blocks are " + times(ratio) + " those inside", ratio, "ratio");
 }
 
 void check_banding(const Lattice& lattice, Findings& findings) {

@@ -112,7 +112,7 @@ constexpr Rule kRules[] = {
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
      "pack-normals FILE --format SAME -o FIXED", ""},
-    {"N212", "alpha-not-one", values, note, true, "Alpha is not 255 beside x in R.",
+    {"N212", "alpha-not-one", values, note, true, "x is in R, but alpha is not 255.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
      "reads R, G and B alone.",
      "pack-normals FILE --keep-length --drop --format SAME -o FIXED", ""},
@@ -173,7 +173,8 @@ constexpr Rule kRules[] = {
      "", "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
-     "out at every eighth column and row. Chroma subsampling halves the resolution of x; go back to a lossless source.",
+     "out at every eighth column and row. A picture that was enlarged without a filter looks alike. Chroma subsampling "
+     "halves the resolution of x; go back to a lossless source.",
      "", "N201 N202 N310"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
@@ -253,7 +254,9 @@ constexpr Rule kRules[] = {
     {"N601", "height-mismatch", pair, error, true, "The normals do not follow from the height map.",
      "Their slopes correlate by less than 0.6 with its differences, or only after a shift: another version, another "
      "crop or another map.",
-     "Bake the normals again from this height map, with their old strength.", "N602"},
+     "Make sure that this is the height map of these normals. If it is, bake them again from it, with their old "
+     "strength.",
+     "N602"},
     {"N602", "height-inverted", pair, warning, true, "White is low in the height map.",
      "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to "
      "be told; else bake them again.",

@@ -76,7 +76,7 @@ struct ObjPart {
     std::vector<ObjCorner> vertices;
     std::unordered_map<ObjCorner, std::uint32_t, ObjCornerHash> known;
     std::vector<std::uint32_t> indices, quads;
-    bool has_uvs = true, has_normals = true;
+    bool has_uvs = true, has_normals = true;  // in all faces
 };
 
 class ObjReader {
@@ -96,7 +96,7 @@ private:
     Result<ObjCorner> corner_of(std::string_view word) const;
     Result<void> read_face(std::string_view line);
     void read_color(std::string_view line);
-    ObjPart& part(bool has_uvs);
+    ObjPart& part(bool has_uvs, bool has_normals);
     Mesh finish();
     [[nodiscard]] MeshPart finished(const ObjPart& part) const;
 
@@ -109,7 +109,8 @@ private:
     int material_ = -1;
     std::map<std::string, int, std::less<>> materials_, objects_;
     std::vector<std::string> material_names_;
-    std::map<std::tuple<int, int, bool>, std::size_t> part_of_;  // by object, material, whether there are UVs
+    // By object, material, whether there are UVs and normals.
+    std::map<std::tuple<int, int, bool, bool>, std::size_t> part_of_;
     std::vector<ObjPart> parts_;
     ObjPart* current_ = nullptr;  // null after `o` and `usemtl`
     std::vector<ObjCorner> corners_;
@@ -167,15 +168,16 @@ Result<ObjCorner> ObjReader::corner_of(std::string_view word) const {
     return corner;
 }
 
-ObjPart& ObjReader::part(bool has_uvs) {
+ObjPart& ObjReader::part(bool has_uvs, bool has_normals) {
     const int mesh = objects_.try_emplace(object_, static_cast<int>(objects_.size())).first->second;
-    const auto [place, is_new] = part_of_.try_emplace({mesh, material_, has_uvs}, parts_.size());
+    const auto [place, is_new] = part_of_.try_emplace({mesh, material_, has_uvs, has_normals}, parts_.size());
     if (is_new) {
         parts_.emplace_back();
         parts_.back().object = object_;
         parts_.back().mesh = mesh;
         parts_.back().material = material_;
         parts_.back().has_uvs = has_uvs;
+        parts_.back().has_normals = has_normals;
     }
     return parts_[place->second];
 }
@@ -190,12 +192,15 @@ Result<void> ObjReader::read_face(std::string_view line) {
     if (corners_.size() < 3) return at_line("a face needs at least 3 corners");
     const bool has_uvs =
         std::all_of(corners_.begin(), corners_.end(), [](const ObjCorner& corner) { return corner.uv != kMissing; });
-    if (current_ == nullptr || current_->has_uvs != has_uvs) current_ = &part(has_uvs);
+    const bool has_normals = std::all_of(corners_.begin(), corners_.end(),
+                                         [](const ObjCorner& corner) { return corner.normal != kMissing; });
+    if (current_ == nullptr || current_->has_uvs != has_uvs || current_->has_normals != has_normals)
+        current_ = &part(has_uvs, has_normals);
     ObjPart& to = *current_;
     polygon_.clear();
     for (ObjCorner& corner : corners_) {
         if (!has_uvs) corner.uv = kMissing;
-        to.has_normals = to.has_normals && corner.normal != kMissing;
+        if (!has_normals) corner.normal = kMissing;
         const auto [place, is_new] = to.known.try_emplace(corner, static_cast<std::uint32_t>(to.vertices.size()));
         if (is_new) to.vertices.push_back(corner);
         polygon_.push_back(place->second);
@@ -291,8 +296,9 @@ Mesh ObjReader::finish() {
 
 Result<Mesh> ObjReader::read(std::string_view text) {
     std::string joined;  // lines that end with a backslash continue
+    const char line_end = text.find('\n') == std::string_view::npos ? '\r' : '\n';  // old Macs end lines with CR
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::size_t end = std::min(text.find(line_end), text.size());
         std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
         ++line_;
@@ -319,7 +325,7 @@ bool is_obj(std::string_view head) {
         if (first == std::string_view::npos) return false;
         head.remove_prefix(first);
         if (!head.starts_with('#')) break;
-        const std::size_t end = head.find('\n');
+        const std::size_t end = head.find_first_of("\r\n");
         if (end == std::string_view::npos) return true;
         head.remove_prefix(end);
     }

@@ -22,8 +22,6 @@ std::string in_lower_case(std::string text) {
     return text;
 }
 
-}  // namespace
-
 std::string stem_of_part(const std::string& name, PartSide side) {
     const Marks& marks = side == PartSide::low ? kLowMarks : kHighMarks;
     const std::string text = in_lower_case(name);
@@ -36,6 +34,16 @@ std::string stem_of_part(const std::string& name, PartSide side) {
         end = separator;
     }
     return text;
+}
+
+}  // namespace
+
+std::vector<int> numbered_names(const std::vector<std::string>& names, PartSide side,
+                                std::map<std::string, int>& numbers) {
+    std::vector<int> found;
+    for (const std::string& name : names)
+        found.push_back(numbers.try_emplace(stem_of_part(name, side), static_cast<int>(numbers.size())).first->second);
+    return found;
 }
 
 std::vector<std::string> lone_names(const std::vector<std::string>& names, const std::vector<int>& own,

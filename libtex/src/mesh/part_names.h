@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,10 @@ namespace tex::inline v1 {
 
 enum class PartSide { low, high };
 
-// The name in lower case, without the last mark of its side and what follows it.
-[[nodiscard]] std::string stem_of_part(const std::string& name, PartSide side);
+// The numbers that the stems of the names have in `numbers`, or get. A stem is the name in lower case, without the last
+// mark of its side and what follows it.
+std::vector<int> numbered_names(const std::vector<std::string>& names, PartSide side,
+                                std::map<std::string, int>& numbers);
 
 // The names, each once, whose numbers are none of `others`. `own` are their numbers.
 std::vector<std::string> lone_names(const std::vector<std::string>& names, const std::vector<int>& own,
