@@ -34,7 +34,6 @@ struct TiffMaker {
     int width, height;
     int samples = 1;
     int bits = 8;
-    int last_bits = 0;      // of the last of three or more samples, if it has others
     int sample_format = 1;  // 1 unsigned, 2 signed, 3 floating
     int photometric = 1;    // 1 black is zero, 2 RGB, 3 palette, 5 CMYK
     int extra = -1;         // type of an extra sample: 1 associated, 2 unassociated alpha
@@ -58,10 +57,8 @@ struct TiffMaker {
             const bool list = tag[0] == 258 || tag[0] == 339;
             if (list && samples > 2) {
                 tag[3] = after + static_cast<std::uint32_t>(tail.size());
-                for (int k = 0; k < samples; ++k) {
-                    const int own_bits = k + 1 == samples && last_bits > 0 ? last_bits : bits;
-                    put(tail, static_cast<std::uint32_t>(tag[0] == 258 ? own_bits : sample_format), 2);
-                }
+                for (int k = 0; k < samples; ++k)
+                    put(tail, static_cast<std::uint32_t>(tag[0] == 258 ? bits : sample_format), 2);
             } else if (list) {
                 const auto v = static_cast<std::uint32_t>(tag[0] == 258 ? bits : sample_format);
                 tag[3] = samples == 2 ? v | v << 16 : v;

@@ -17,8 +17,8 @@ namespace tex::reader {
 // False if it cannot be opened. `bytes` gets those of the file, and must outlive the codec.
 bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes);
 
-// Null if it cannot be opened. m: the file may change while it is mapped.
-TIFF* open_tiff_input(const char* mode = "rm");
+// Null if it cannot be opened.
+TIFF* open_tiff_input();
 
 // The stream, if there is one, must outlive the file. Throws what OpenEXR throws.
 Imf::MultiPartInputFile open_exr_input(std::unique_ptr<Imf::IStream>& stream, int threads);

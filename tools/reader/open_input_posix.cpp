@@ -23,7 +23,7 @@ bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& 
     return true;
 }
 
-TIFF* open_tiff_input(const char* mode) { return TIFFOpen(kInputPath, mode); }
+TIFF* open_tiff_input() { return TIFFOpen(kInputPath, "rm"); }  // m: the file may change while it is mapped
 
 Imf::MultiPartInputFile open_exr_input(std::unique_ptr<Imf::IStream>&, int threads) {
     return {kInputPath, threads, false};

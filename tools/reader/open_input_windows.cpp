@@ -73,9 +73,9 @@ bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& 
     return true;
 }
 
-TIFF* open_tiff_input(const char* mode) {
+TIFF* open_tiff_input() {
     auto* const reading = new Reading{here()};
-    TIFF* const tiff = TIFFClientOpen("the file", mode, reading, read_tiff, write_tiff, seek_tiff, close_tiff,
+    TIFF* const tiff = TIFFClientOpen("the file", "rm", reading, read_tiff, write_tiff, seek_tiff, close_tiff,
                                       size_of_tiff, nullptr, nullptr);
     if (tiff == nullptr) delete reading;
     return tiff;

@@ -13,7 +13,6 @@
 #include "decoders.h"
 #include "open_input.h"
 #include "tiff_tags.h"
-#include "tiff_uneven.h"
 
 namespace tex::reader {
 namespace {
@@ -238,8 +237,6 @@ bool decode_tiff(const Task& task, ReaderHeader& header) {
     TIFFSetErrorHandler(keep_error);
     first_error().clear();
     const std::unique_ptr<TIFF, Closer> file(open_tiff_input());
-    if (!file && has_uneven_samples())
-        return refuse(header, ErrorCode::unsupported, "samples of different bits or formats are not supported");
     if (!file) return refuse_damaged(header);
     TIFF* const tiff = file.get();
     const Layout layout = layout_of(tiff);
