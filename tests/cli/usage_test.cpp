@@ -179,9 +179,9 @@ TEST_P(EveryUsage, OutputsMustNotBeInputs) {
     refuses({"a.png", "-o", "x.dds", "--depfile", "./x.dds"}, "--depfile: ./x.dds is an output");
     scratch_.write("list.dds", "a.png\n");
     before_ = scratch_.list();
-    refuses({"--files-from", "list.dds", "--name", "list.dds"}, "the output list.dds is the input list.dds");
+    refuses({"--files-from", "list.dds", "--name", "list.dds"}, "the output list.dds is the file of --files-from");
     refuses({"--files-from", "list.dds", "--name", "x.dds", "--depfile", "list.dds"},
-            "the output list.dds is the input list.dds");
+            "the output list.dds is the file of --files-from");
 }
 
 TEST_P(EveryUsage, OutputsMustDiffer) {
