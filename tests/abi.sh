@@ -6,9 +6,10 @@
 #                                    that was linked to that one uses must be there, and as it was
 #     tests/abi.sh --write FILE      writes the interface of HEAD, for abidiff
 #
-# The names and types of the interface come from the debug information of a build of its own, in build/abi. The last
-# line is "abi: N passed, M failed". Exits 77 if there is no tag.
+# abidw finds types in debug information, so libtex is built with it, in build/abi. The last line is "abi: N passed, M
+# failed". Exits 77 if there is no tag.
 set -euo pipefail
+if [ "${1:-}" = --write ]; then written=$(realpath "${2:?}"); fi
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scratch=build/abi
 
@@ -27,7 +28,7 @@ describe() {
 
 mkdir -p "$scratch"
 if [ "${1:-}" = --write ]; then
-    describe HEAD "${2:?}"
+    describe HEAD "$written"
     exit
 fi
 before=${1:-$(git describe --tags --abbrev=0 --match 'v[0-9]*' 2>/dev/null || true)}
