@@ -137,6 +137,8 @@ mapfile -t written < <(select_files '\.(cpp|h|sh|md|in|mdoc|txt|json)$|^\.ci/run
     grep -v '^tests/lint\.sh$\|^man/.*\.md$')
 ban '\b(TODO|FIXME|XXX)\b' 'unfinished work' "${written[@]}"
 ban '[[:blank:]]+$' 'trailing blanks' "${written[@]}"
+mapfile -t tests < <(select_files '^tests/.*\.(cpp|h)$' | grep -v '^tests/scratch\.h$')
+ban '\bTempDir\(|temp_directory_path|mkdtemp' 'a file of a test lies outside a Scratch folder' "${tests[@]}"
 ban $'\t' 'tabs' "${written[@]}"
 mapfile -t code < <(select_files '\.(cpp|h|sh|cmake|cmake\.in)$|CMakeLists\.txt$|^\.ci/run$')
 LC_ALL=C.UTF-8 ban '^.{121}' 'more than 120 columns' "${code[@]}"

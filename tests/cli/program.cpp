@@ -6,8 +6,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -26,17 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string slurp(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void spill(const fs::path& path, const std::string& text) {
-    std::ofstream file(path, std::ios::binary);
-    file << text;
-    if (!file.flush()) throw std::runtime_error("cannot write " + path.string());
-}
-
 std::vector<char*> pointers(std::vector<std::string>& words) {
     std::vector<char*> result;
     for (std::string& word : words) result.push_back(word.data());
@@ -52,35 +39,6 @@ std::string path_of(const std::string& program) {
 }
 
 }  // namespace
-
-Scratch::Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "cli_tests.XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot create a scratch folder");
-    folder_ = pattern;
-}
-
-Scratch::~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-}
-
-std::string Scratch::path(const std::string& name) const { return (name.empty() ? folder_ : folder_ / name).string(); }
-
-void Scratch::add_sample(const std::string& sample, const std::string& name) const {
-    fs::copy_file(fs::path(TEX_SOURCE_DIR) / "samples" / sample, folder_ / name);
-}
-
-void Scratch::write(const std::string& name, const std::string& text) const { spill(folder_ / name, text); }
-std::string Scratch::read(const std::string& name) const { return slurp(folder_ / name); }
-
-std::vector<std::string> Scratch::list() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-        names.push_back(entry.path().lexically_relative(folder_).string());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-}
 
 Background::Background(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
                        const Setting& setting)

@@ -4,32 +4,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "scratch.h"
+
 namespace tex::cli {
-
-// A folder that is removed together with its object.
-class Scratch {
-public:
-    Scratch();
-    ~Scratch();
-    Scratch(const Scratch&) = delete;
-    Scratch& operator=(const Scratch&) = delete;
-
-    [[nodiscard]] std::string path(const std::string& name = {}) const;
-    // Copies a file of samples/ into the folder.
-    void add_sample(const std::string& sample, const std::string& name) const;
-    void write(const std::string& name, const std::string& text) const;
-    [[nodiscard]] std::string read(const std::string& name) const;
-    [[nodiscard]] bool has(const std::string& name) const { return std::filesystem::exists(path(name)); }
-    // The names of all files and folders in it, sorted.
-    [[nodiscard]] std::vector<std::string> list() const;
-
-private:
-    std::filesystem::path folder_;
-};
 
 struct Ran {
     int code = -1;  // as a shell sees it: 128 + n after signal n

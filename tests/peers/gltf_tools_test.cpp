@@ -22,6 +22,8 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "scratch.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,20 +190,16 @@ protected:
         if (!fs::exists(kMeshes)) GTEST_SKIP() << "no ../shared/data";
         if (!GetParam().always && !runs_all()) return;
         if (tools().empty()) GTEST_SKIP() << "npm cannot install gltfpack and gltf-transform here";
-        std::string name = (fs::temp_directory_path() / "gltf_tools_XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-        fs::copy((kMeshes / GetParam().file).parent_path(), folder_ / "in", fs::copy_options::recursive);
-        for (const auto& entry : fs::recursive_directory_iterator(folder_))
+        fs::copy((kMeshes / GetParam().file).parent_path(), scratch_.path("in"), fs::copy_options::recursive);
+        for (const auto& entry : fs::recursive_directory_iterator(scratch_.path()))
             fs::permissions(entry, fs::perms::owner_all, fs::perm_options::add);
-        model_ = folder_ / "in" / fs::path(GetParam().file).filename();
+        model_ = fs::path(scratch_.path("in")) / fs::path(GetParam().file).filename();
         if (model_.extension() == ".gltf")
             add_missing_pictures(model_, fs::path(TEX_SOURCE_DIR) / "samples/bricks.png");
     }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
-    }
 
-    fs::path folder_, model_;
+    const tex::Scratch scratch_;
+    fs::path model_;
 };
 
 TEST_P(GltfTools, OutputsAreReadAsTheModel) {
@@ -212,9 +210,9 @@ TEST_P(GltfTools, OutputsAreReadAsTheModel) {
         SCOPED_TRACE(tool.name);
         if (GetParam().exact_only && !tool.exact) continue;
         if (!runs_all() && !GetParam().exact_only && (tool.exact || std::string(tool.name) == "Quantize")) continue;
-        const std::string out = (folder_ / (std::string(tool.name) + ".glb")).string();
+        const std::string out = scratch_.path(std::string(tool.name) + ".glb");
         const bool is_gltfpack = std::string(tool.program) == "gltfpack";
-        ASSERT_TRUE(run("cd '" + folder_.string() + "' && '" + tools() + tool.program + "' " + tool.before + " '" +
+        ASSERT_TRUE(run("cd '" + scratch_.path() + "' && '" + tools() + tool.program + "' " + tool.before + " '" +
                         model_.string() + (is_gltfpack ? "' -o '" : "' '") + out + "'" + tool.after));
         const auto packed = on_mesh(out, GetParam().material);
         ASSERT_TRUE(packed);

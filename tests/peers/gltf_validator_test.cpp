@@ -24,6 +24,8 @@
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
 
+#include "scratch.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -193,21 +195,15 @@ class GltfValidator : public testing::Test {
 protected:
     void SetUp() override {
         if (modules().empty()) GTEST_SKIP() << "npm cannot install gltf-validator here";
-        std::string name = (fs::temp_directory_path() / "gltf_validator_XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    void TearDown() override {
-        if (!folder_.empty()) fs::remove_all(folder_);
     }
 
     // Compares both on each of the models.
     void compare(const std::vector<fs::path>& models) {
         std::string list;
         for (const fs::path& model : models) list += model.string() + "\n";
-        write(folder_ / "list", list);
         ASSERT_TRUE(shell("node '" + (kSource / "tests/peers/gltf_validator.mjs").string() + "' '" + modules() + "' '" +
-                          (folder_ / "list").string() + "' >'" + (folder_ / "said").string() + "'"));
-        std::istringstream said(read(folder_ / "said"));
+                          scratch_.write("list", list) + "' >'" + scratch_.path("said") + "'"));
+        std::istringstream said(scratch_.read("said"));
         std::string line;
         std::map<std::string, std::pair<int, std::string>> accepted;  // how often each error was, and the first model
         for (const fs::path& model : models) {
@@ -238,7 +234,7 @@ protected:
                error.reason.find("requires the extension ACME_nonsense") != std::string::npos;
     }
 
-    fs::path folder_;
+    const tex::Scratch scratch_;
     int valid_ = 0, refused_ = 0;
 };
 
@@ -259,9 +255,9 @@ TEST_F(GltfValidator, AgreesOnModelsOfOthers) {
 
 // Of odd_models.py, but for a byte order mark, which glTF forbids and engines read.
 TEST_F(GltfValidator, AgreesOnOddModels) {
-    ASSERT_TRUE(shell("python3 '" + (kSource / "tests/peers/odd_models.py").string() + "' '" + folder_.string() + "'"));
+    ASSERT_TRUE(shell("python3 '" + (kSource / "tests/peers/odd_models.py").string() + "' '" + scratch_.path() + "'"));
     std::vector<fs::path> models;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
+    for (const auto& entry : fs::directory_iterator(scratch_.path())) {
         const auto extension = entry.path().extension();
         if (entry.path().stem() == "json_with_mark") continue;
         if (extension == ".gltf" || extension == ".glb") models.push_back(entry.path());
@@ -285,7 +281,7 @@ TEST_F(GltfValidator, AgreesOnModelsWithOneChange) {
         for (std::size_t k = 0; k < changed.size(); ++k) {
             Glb one = glb;
             one.document = std::move(changed[k]);
-            models.push_back(folder_ / (seed + std::to_string(k) + ".glb"));
+            models.push_back(scratch_.path(seed + std::to_string(k) + ".glb"));
             write(models.back(), one.bytes());
         }
     }

@@ -4,13 +4,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
+
+#include "scratch.h"
 
 namespace peers {
 namespace {
@@ -48,17 +47,8 @@ tex::Texture bumpy_texture(tex::Extent extent, tex::Encoding encoding) {
 }
 
 std::string scratch_path(const std::string& name) {
-    static const std::string folder = [] {
-        std::string pattern = (std::filesystem::temp_directory_path() / "libtex-peers-XXXXXX").string();
-        return std::string(mkdtemp(pattern.data()));
-    }();
-    static const struct Sweep {
-        ~Sweep() {
-            std::error_code ignored;
-            std::filesystem::remove_all(folder, ignored);
-        }
-    } sweep;
-    return folder + "/" + name;
+    static const tex::Scratch scratch;
+    return scratch.path(name);
 }
 
 float largest_difference(const tex::Image& ours, int channel, const std::vector<float>& theirs, int channels) {

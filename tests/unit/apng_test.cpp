@@ -4,8 +4,6 @@
 #include "formats/png/apng.h"
 
 #include <cstdint>
-#include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <string>
 
@@ -14,6 +12,7 @@
 #include <tex/preview.h>
 
 #include "preview/canvas.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -34,11 +33,8 @@ std::vector<std::string> types_of(const std::vector<std::byte>& file) {
 TEST(Apng, ShowsItsFirstFrameToProgramsThatKnowNoAnimation) {
     const auto file = encode_animation({picture(10), picture(20), picture(30)}, 20);
     ASSERT_TRUE(file);
-    const std::string path = testing::TempDir() + "apng_test.png";
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(file->data()), static_cast<std::streamsize>(file->size()));
-    const auto image = read_image(path);  // libpng checks the CRC of every chunk that it reads
-    std::remove(path.c_str());
+    const Scratch scratch;
+    const auto image = read_image(scratch.write("a.png", *file));  // libpng checks the CRC of every chunk that it reads
     ASSERT_TRUE(image) << image.error().message();
     EXPECT_EQ(image->extent(), (Extent{5, 3}));
     EXPECT_FLOAT_EQ(image->planes[0].at(2, 1), 10.0f / 255.0f);

@@ -19,6 +19,7 @@
 
 #include <tex/file.h>
 
+#include "scratch.h"
 #include "unit/file_text.h"
 
 namespace {
@@ -105,15 +106,9 @@ namespace {
 const std::string kOld = "old";
 const std::string kNew(100'000, 'n');
 
-class AtomicFileFaults : public testing::TestWithParam<std::tuple<bool, bool, bool>> {
+class AtomicFileFaults : public testing::TestWithParam<std::tuple<bool, bool, bool>>, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "faults_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-        path_ = folder_ + "/a";
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
+    void SetUp() override { path_ = folder_ + "/a"; }
     [[nodiscard]] bool no_nameless() const { return std::get<0>(GetParam()); }
     [[nodiscard]] bool exists() const { return std::get<1>(GetParam()) && !std::get<2>(GetParam()); }
     [[nodiscard]] bool no_clobber() const { return std::get<2>(GetParam()); }
@@ -139,7 +134,6 @@ protected:
         faults.active = false;
         return written;
     }
-    std::string folder_;
     std::string path_;
 };
 

@@ -21,25 +21,13 @@
 
 #include <tex/file.h>
 
+#include "scratch.h"
 #include "unit/file_text.h"
 
 namespace tex {
 namespace {
 
-class AtomicFile : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "atomic_file_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
-    }
-    std::string folder_;
-};
+class AtomicFile : public testing::Test, protected Scratch {};
 
 TEST_F(AtomicFile, WritesANewFileWithTheModeOfTheUmask) {
     const mode_t before = umask(027);

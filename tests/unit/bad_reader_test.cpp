@@ -7,11 +7,11 @@
 
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "formats/reader/reader_process.h"
+#include "scratch.h"
 #include "unit/tiff_maker.h"
 
 namespace tex {
@@ -19,15 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BadReader : public testing::Test {
+class BadReader : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "reader_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-        tiff_.data = raw<std::uint8_t>({0, 1, 128, 255});
-    }
-    void TearDown() override { fs::remove_all(folder_); }
+    void SetUp() override { tiff_.data = raw<std::uint8_t>({0, 1, 128, 255}); }
     // Reads a sound picture with a shell script as the reader.
     Error read_with(const std::string& script, int timeout = 20) {
         ReadOptions options;
@@ -35,7 +29,7 @@ protected:
         options.reader_timeout = timeout;
         std::ofstream(options.reader) << "#!/bin/sh\n" << script << '\n';
         chmod(options.reader.c_str(), 0755);
-        const Result<Image> image = read(tiff_.make(), options);
+        const Result<Image> image = tex::read(tiff_.make(), options);
         return image ? Error{ErrorCode::cancelled, {}, "it was read"} : image.error();
     }
     // A script that writes `header` and then `data` zero bytes, and succeeds.
@@ -57,7 +51,6 @@ protected:
         return header;
     }
     TiffMaker tiff_{4, 1};
-    std::string folder_;
 };
 
 TEST_F(BadReader, ThatCrashesIsOneSentence) {
@@ -134,7 +127,7 @@ TEST_F(BadReader, ThatLiesAboutThePictureIsNotBelieved) {
 TEST_F(BadReader, ThatIsNotThereIsAnIoError) {
     ReadOptions options;
     options.reader = folder_ + "/none";
-    const Result<Image> image = read(tiff_.make(), options);
+    const Result<Image> image = tex::read(tiff_.make(), options);
     ASSERT_FALSE(image);
     EXPECT_EQ(image.error().code, ErrorCode::io);
     EXPECT_NE(image.error().reason.find("cannot be started"), std::string::npos) << image.error().reason;

@@ -6,27 +6,19 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "formats/bil/bil_header.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
-class Bil : public testing::Test {
+class Bil : public testing::Test, protected Scratch {
 protected:
-    Bil() : folder_(std::filesystem::temp_directory_path() / ("bil_test." + std::to_string(getpid()))) {
-        std::filesystem::create_directory(folder_);
-    }
-    ~Bil() override { std::filesystem::remove_all(folder_); }
-
-    void write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-    }
-    [[nodiscard]] Result<Image> read(const std::string& name) const { return read_image((folder_ / name).string()); }
+    [[nodiscard]] Result<Image> read(const std::string& name) const { return read_image(path(name)); }
     // Reads a grid of 2 x 2 with this header besides its extent.
     [[nodiscard]] Result<Image> read(const std::string& header, const std::string& bytes) const {
         write("h.hdr", "NROWS 2\nNCOLS 2\n" + header);
@@ -38,8 +30,6 @@ protected:
         return image ? "read"
                      : std::filesystem::path(image.error().file).filename().string() + ": " + image.error().reason;
     }
-
-    const std::filesystem::path folder_;
 };
 
 // The texels as "a b c d".

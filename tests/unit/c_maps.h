@@ -97,10 +97,10 @@ struct CallerMap {
     CallerPlane x, y, z;
 };
 
-// Scratch of exactly the size that a function states, at an odd address.
-class Scratch {
+// Scratch memory of exactly the size that a function states, at an odd address.
+class ScratchMemory {
 public:
-    explicit Scratch(std::size_t size) : bytes_(size + 1, 0), size_(size) {}
+    explicit ScratchMemory(std::size_t size) : bytes_(size + 1, 0), size_(size) {}
     [[nodiscard]] void* data() { return bytes_.data() + 1; }
     [[nodiscard]] std::size_t size() const { return size_; }
 

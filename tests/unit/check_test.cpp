@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <string>
 
@@ -17,6 +16,7 @@
 #include <tex/pack.h>
 
 #include "reference/damage.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -325,8 +325,8 @@ TEST(Check, FloatsWithoutANegativeValueAreReadByTheirLength) {
 }
 
 TEST(CheckFile, UnreadableFilesAreFindings) {
-    const std::string path = testing::TempDir() + "/check_test_not_a_picture.dds";
-    std::ofstream(path) << "DDS nothing";
+    const Scratch scratch;
+    const std::string path = scratch.write("not_a_picture.dds", "DDS nothing");
     const auto report = check_file(path);
     ASSERT_TRUE(report);
     ASSERT_TRUE(report->error);

@@ -6,8 +6,9 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -62,20 +63,9 @@ Image rgba(float r, float g, float b, float a) {
 
 double srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
 
-class Color : public testing::Test {
+class Color : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "color_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-        config_ = make("config.ocio", kConfig);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string make(const std::string& name, const std::string& text) const {
-        std::ofstream(folder_ + "/" + name) << text;
-        return folder_ + "/" + name;
-    }
-    std::string folder_;
+    void SetUp() override { config_ = write("config.ocio", kConfig); }
     std::string config_;
 };
 
@@ -110,7 +100,7 @@ TEST_F(Color, TableAndFormulaAgreeToTheLastBit) {
 TEST_F(Color, FilesAreTheConfigurationAndItsTables) {
     std::filesystem::create_directory(folder_ + "/luts");
     const std::string table =
-        make("luts/missing.spi1d", "Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n0.5\n}\n");
+        write("luts/missing.spi1d", "Version 1\nFrom 0.0 1.0\nLength 2\nComponents 1\n{\n0.0\n0.5\n}\n");
     const auto files = color_files({"broken", config_});
     ASSERT_TRUE(files) << files.error().message();
     EXPECT_EQ(*files, (std::vector<std::string>{config_, table}));
@@ -161,13 +151,13 @@ TEST_F(Color, ErrorsNameTheConfigurationAndTheSpaces) {
 
     EXPECT_EQ(to_linear(grey({0.5f}), {"raw", folder_ + "/missing.ocio"}).error().code, ErrorCode::io);
     EXPECT_EQ(to_linear(grey({0.5f}), {"raw", folder_}).error().code, ErrorCode::io);
-    EXPECT_EQ(to_linear(grey({0.5f}), {"raw", make("bad.ocio", "ocio_profile_version: [")}).error().code,
+    EXPECT_EQ(to_linear(grey({0.5f}), {"raw", write("bad.ocio", "ocio_profile_version: [")}).error().code,
               ErrorCode::bad_data);
-    EXPECT_EQ(to_linear(grey({0.5f}), {"raw", make("bad2.ocio", "hello")}).error().code, ErrorCode::bad_data);
+    EXPECT_EQ(to_linear(grey({0.5f}), {"raw", write("bad2.ocio", "hello")}).error().code, ErrorCode::bad_data);
     EXPECT_EQ(to_linear(grey({0.5f}), {"broken", config_}).error().code, ErrorCode::bad_data);
     std::string roleless = kConfig;
     roleless.erase(roleless.find("  scene_linear: lin\n"), 20);
-    const Result<Image> no_role = to_linear(grey({0.5f}), {"gamma2", make("roleless.ocio", roleless)});
+    const Result<Image> no_role = to_linear(grey({0.5f}), {"gamma2", write("roleless.ocio", roleless)});
     ASSERT_FALSE(no_role);
     EXPECT_EQ(no_role.error().code, ErrorCode::bad_option);
     EXPECT_EQ(no_role.error().reason, "the configuration has no role scene_linear");

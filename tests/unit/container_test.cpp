@@ -2,12 +2,12 @@
 
 #include <tex/file.h>
 
-#include <cstdlib>
 #include <sstream>
 
 #include <gtest/gtest.h>
 #include <tex/pack.h>
 
+#include "scratch.h"
 #include "unit/textures.h"
 
 namespace tex {
@@ -107,16 +107,7 @@ TEST(Container, RefusesOtherFilesFromMemory) {
     EXPECT_EQ(read_texture(std::span<const std::byte>(), "empty").error().reason, "is empty");
 }
 
-class ContainerFiles : public testing::Test {
-protected:
-    ContainerFiles() {
-        std::string pattern = testing::TempDir() + "container_XXXXXX";
-        folder_ = mkdtemp(pattern.data());
-    }
-    ~ContainerFiles() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string file(const std::string& name) const { return folder_ + "/" + name; }
-    std::string folder_;
-};
+class ContainerFiles : public testing::Test, protected Scratch {};
 
 // The content, not the name, determines how a file is read.
 TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
@@ -131,10 +122,10 @@ TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
                           {"a.tga", Encoding::rgba8, 1},  {"a.bmp", Encoding::rgb8, 1}};
     for (const Case& c : cases) {
         const Texture texture = encoded_texture(c.encoding, {13, 7}, c.levels);
-        const auto written = write_texture(file(c.name), texture);
+        const auto written = write_texture(path(c.name), texture);
         ASSERT_TRUE(written) << written.error().message();
-        std::filesystem::rename(file(c.name), file("nameless"));
-        const auto read = read_texture(file("nameless"));
+        std::filesystem::rename(path(c.name), path("nameless"));
+        const auto read = read_texture(path("nameless"));
         ASSERT_TRUE(read) << read.error().message();
         ASSERT_EQ(read->levels.size(), texture.levels.size()) << c.name;
         const auto before = decode(texture, 0);
@@ -147,20 +138,20 @@ TEST_F(ContainerFiles, ReadsWhatItWroteWhateverItsName) {
 }
 
 TEST_F(ContainerFiles, SaysWhatAContainerCanHold) {
-    const auto refused = write_texture(file("a.png"), encoded_texture(Encoding::bc5, {4, 4}, 1));
+    const auto refused = write_texture(path("a.png"), encoded_texture(Encoding::bc5, {4, 4}, 1));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
-    EXPECT_EQ(refused.error().file, file("a.png"));
-    EXPECT_FALSE(std::filesystem::exists(file("a.png")));
-    const auto nameless = write_texture(file("a"), encoded_texture(Encoding::rgb8, {4, 4}, 1));
+    EXPECT_EQ(refused.error().file, path("a.png"));
+    EXPECT_FALSE(std::filesystem::exists(path("a.png")));
+    const auto nameless = write_texture(path("a"), encoded_texture(Encoding::rgb8, {4, 4}, 1));
     EXPECT_EQ(nameless.error().code, ErrorCode::bad_option);
 }
 
 TEST_F(ContainerFiles, TellMissingFilesFromDamagedOnes) {
-    EXPECT_EQ(read_texture(file("missing.dds")).error().code, ErrorCode::io);
+    EXPECT_EQ(read_texture(path("missing.dds")).error().code, ErrorCode::io);
     EXPECT_EQ(read_texture(folder_).error().code, ErrorCode::io);
-    std::ofstream(file("empty.dds")).close();
-    EXPECT_EQ(read_texture(file("empty.dds")).error().code, ErrorCode::bad_data);
+    std::ofstream(path("empty.dds")).close();
+    EXPECT_EQ(read_texture(path("empty.dds")).error().code, ErrorCode::bad_data);
 }
 
 }  // namespace

@@ -6,34 +6,19 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 
 #include "files/nameless_file.h"
 #include "files/path_names.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
 namespace fs = std::filesystem;
 
-class Descriptors : public testing::Test {
-protected:
-    void SetUp() override {
-        static int made = 0;
-        folder_ = fs::path(testing::TempDir()) / ("descriptors_" + std::to_string(++made));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    void write(const std::string& name, std::string_view text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-    }
-
-    fs::path folder_;
-};
+class Descriptors : public testing::Test, protected Scratch {};
 
 std::string read_at(int fd, std::uint64_t offset, std::size_t count) {
     std::string text(count, '\0');
@@ -73,7 +58,7 @@ TEST_F(Descriptors, BytesAreNotLines) {
 
 TEST_F(Descriptors, ATemporaryFileHasNoNameAnybodyFinds) {
     {
-        const Descriptor file = temporary_file(folder_.string());
+        const Descriptor file = temporary_file(folder_);
         ASSERT_TRUE(file);
         const std::string text = "some bytes";
         const auto* const bytes = reinterpret_cast<const std::byte*>(text.data());
@@ -93,8 +78,8 @@ TEST_F(Descriptors, TwoNamesOfAFileAreOne) {
     ASSERT_TRUE(one && two);
     EXPECT_EQ(one->inode, two->inode);
     EXPECT_NE(one->inode, FileVersion::of(path("three"))->inode);
-    EXPECT_EQ(FileStatus::of(folder_.string())->kind, FileKind::folder);
-    EXPECT_FALSE(FileVersion::of(folder_.string()));
+    EXPECT_EQ(FileStatus::of(folder_)->kind, FileKind::folder);
+    EXPECT_FALSE(FileVersion::of(folder_));
 }
 
 TEST_F(Descriptors, WhatIsMissingHasAReason) {

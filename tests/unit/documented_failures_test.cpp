@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "scratch.h"
 #include "unit/failures.h"
 #include "unit/normal_maps.h"
 
@@ -186,9 +187,8 @@ TEST(DocumentedFailures, OfPipelines) {
     roughness.roughness.emplace();
     SourceOptions measured;
     measured.measure_y = true;
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tex_documented_failures";
-    std::filesystem::create_directories(folder);
-    const std::string file = (folder / "flat.dds").string(), out = (folder / "out.dds").string();
+    const Scratch scratch;
+    const std::string file = scratch.path("flat.dds"), out = scratch.path("out.dds");
     PackOptions bc5;
     bc5.encoding = Encoding::bc5;
     ASSERT_TRUE(write_texture(file, *pack(*build_mip_chain(flat_map({8, 8})), bc5)));
@@ -229,7 +229,6 @@ TEST(DocumentedFailures, OfPipelines) {
     });
     EXPECT_EQ(y.error().file, file) << "all of which name the file";
     EXPECT_FALSE(std::filesystem::exists(out));
-    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "scratch.h"
 #include "unit/failures.h"
 #include "unit/normal_maps.h"
 
@@ -38,8 +38,8 @@ TEST(DocumentedFailures, OfMeshes) {
     unknown.checks.enable = {"N999"};
     MeshReadOptions absent;
     absent.reader.reader = "/nowhere/tex-reader";
-    const std::string ply = testing::TempDir() + "documented_failures.ply";
-    std::ofstream(ply) << "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n";
+    const Scratch scratch;
+    const std::string ply = scratch.write("a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_header\n");
     ModelMap without;
     without.image = -1;
     expect_all({

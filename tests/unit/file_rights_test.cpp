@@ -8,15 +8,15 @@
 
 #include <sys/stat.h>
 #include <sys/xattr.h>
-#include <unistd.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include <tex/file.h>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -41,18 +41,14 @@ std::string acl(const std::vector<Entry>& entries) {
 
 const std::string kOneUser = acl({{kOwner, 6}, {kUser, 6, 1234}, {kOwningGroup, 0}, {kMask, 6}, {kOther, 0}});
 
-class FileRights : public testing::Test {
+class FileRights : public testing::Test, protected Scratch {
 protected:
     void SetUp() override {
-        std::string pattern = testing::TempDir() + "file_rights_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
         file_ = folder_ + "/a";
         std::ofstream(file_) << "old";
         if (!set(file_, kAcl, kOneUser)) GTEST_SKIP() << "the file system of " << folder_ << " has no ACLs";
         removexattr(file_.c_str(), kAcl);
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
 
     static bool set(const std::string& path, const char* name, const std::string& value) {
         return setxattr(path.c_str(), name, value.data(), value.size(), 0) == 0;
@@ -70,7 +66,7 @@ protected:
         const Result<void> written = write_file(file_, {std::byte{1}});
         ASSERT_TRUE(written) << written.error().message();
     }
-    std::string folder_, file_;
+    std::string file_;
 };
 
 mode_t without(mode_t mode, const std::string& list) {

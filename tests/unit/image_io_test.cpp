@@ -17,6 +17,8 @@
 #include <sstream>
 #include <thread>
 
+#include "scratch.h"
+
 namespace tex {
 namespace {
 
@@ -209,20 +211,7 @@ TEST(ImageIo, HostileFilesAreRefusedOrReadInTime) {
     }
 }
 
-class ImageIoFiles : public testing::Test {
-protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "image_io_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    std::string make(const std::string& name, const std::string& content) const {
-        std::ofstream(folder_ + "/" + name, std::ios::binary) << content;
-        return folder_ + "/" + name;
-    }
-    std::string folder_;
-};
+class ImageIoFiles : public testing::Test, protected Scratch {};
 
 TEST_F(ImageIoFiles, TruncationAtEveryPowerOfTwoIsDamage) {
     if (!fs::exists(kData)) GTEST_SKIP() << "no shared data";
@@ -231,7 +220,7 @@ TEST_F(ImageIoFiles, TruncationAtEveryPowerOfTwoIsDamage) {
         std::stringstream whole;
         whole << std::ifstream(kData + "/height/" + name, std::ios::binary).rdbuf();
         for (std::size_t n = 4; n < whole.str().size(); n *= 2) {
-            const std::string path = make("cut", whole.str().substr(0, n));
+            const std::string path = write("cut", whole.str().substr(0, n));
             const Result<Image> image = read_image(path, quick());
             ASSERT_FALSE(image) << name << ", " << n;
             EXPECT_EQ(image.error().code, ErrorCode::bad_data) << name << ", " << n << ": " << image.error().reason;
@@ -253,14 +242,14 @@ TEST_F(ImageIoFiles, RefusesWhatIsNoPicture) {
     for (const std::string text : {"hello, world", "#version 330\n", "%PDF-1.4", "x",
                                    "\x7f"
                                    "ELF\2\1\1"}) {
-        const Result<Image> image = read_image(make("a.png", text));
+        const Result<Image> image = read_image(write("a.png", text));
         ASSERT_FALSE(image);
         EXPECT_EQ(image.error().code, ErrorCode::bad_data);
         EXPECT_EQ(image.error().reason, "not a picture, or of a type that is not supported");
     }
-    EXPECT_EQ(read_image(make("a.ktx", "\xabKTX 11\xbb\r\n\x1a\n")).error().reason,
+    EXPECT_EQ(read_image(write("a.ktx", "\xabKTX 11\xbb\r\n\x1a\n")).error().reason,
               "truncated: the KTX header is not complete");
-    EXPECT_EQ(read_image(make("empty.png", "")).error().reason, "is empty");
+    EXPECT_EQ(read_image(write("empty.png", "")).error().reason, "is empty");
     EXPECT_EQ(read_image(folder_).error().reason, "is a directory; name its files");
     EXPECT_EQ(read_image(folder_ + "/missing.png").error().code, ErrorCode::io);
 }

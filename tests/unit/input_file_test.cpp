@@ -9,41 +9,31 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
 #include <fstream>
 #include <thread>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
-class InputFileTest : public testing::Test {
+class InputFileTest : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "input_file_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-    std::string make(const std::string& name, const std::string& content) const {
-        std::ofstream(folder_ + "/" + name, std::ios::binary) << content;
-        return folder_ + "/" + name;
-    }
     static std::string text(const std::vector<std::byte>& bytes) {
         return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
     }
-    std::string folder_;
 };
 
 TEST_F(InputFileTest, ReadsAWholeFile) {
     std::string content(200'000, 'x');
     for (std::size_t k = 0; k < content.size(); ++k) content[k] = static_cast<char>(k * 7 / 3);
-    const auto bytes = read_whole_file(make("a", content));
+    const auto bytes = read_whole_file(write("a", content));
     ASSERT_TRUE(bytes) << bytes.error().message();
     EXPECT_EQ(text(*bytes), content);
 }
 
 TEST_F(InputFileTest, AnEarlierInterruptionIsNotOneAtTheEnd) {
-    auto file = InputFile::open(make("a", "abc"));
+    auto file = InputFile::open(write("a", "abc"));
     ASSERT_TRUE(file);
     std::byte bytes[8];
     ASSERT_EQ(*file->read(bytes, 3), 3u);
@@ -79,7 +69,7 @@ TEST_F(InputFileTest, SettlesAStreamInMemory) {
 }
 
 TEST_F(InputFileTest, HeadDoesNotConsume) {
-    auto file = InputFile::open(make("a", "0123456789"));
+    auto file = InputFile::open(write("a", "0123456789"));
     ASSERT_TRUE(file);
     EXPECT_EQ(file->head().size(), 10u);
     EXPECT_EQ(file->size(), 10);
@@ -95,17 +85,17 @@ TEST_F(InputFileTest, RefusesWhatIsNoFileInPlainWords) {
     EXPECT_EQ(read_whole_file(folder_ + "/missing").error().reason, "no such file or directory");
     EXPECT_EQ(read_whole_file(folder_).error().reason, "is a directory; name its files");
     EXPECT_EQ(read_whole_file("/dev/zero").error().reason, "is a device, not a file");
-    EXPECT_EQ(read_whole_file(make("empty", "")).error().code, ErrorCode::bad_data);
+    EXPECT_EQ(read_whole_file(write("empty", "")).error().code, ErrorCode::bad_data);
     EXPECT_EQ(read_whole_file(std::string("a\0b", 3)).error().code, ErrorCode::io);
     if (geteuid() != 0) {
-        const std::string path = make("secret", "s");
+        const std::string path = write("secret", "s");
         ASSERT_EQ(chmod(path.c_str(), 0), 0);
         EXPECT_EQ(read_whole_file(path).error().reason, "permission denied");
     }
 }
 
 TEST_F(InputFileTest, RefusesMoreThanTheLimitBeforeTakingMemory) {
-    const std::string path = make("sparse", "x");
+    const std::string path = write("sparse", "x");
     ASSERT_EQ(truncate(path.c_str(), off_t{1} << 40), 0);
     const auto bytes = read_whole_file(path);
     ASSERT_FALSE(bytes);
@@ -113,7 +103,7 @@ TEST_F(InputFileTest, RefusesMoreThanTheLimitBeforeTakingMemory) {
 }
 
 TEST_F(InputFileTest, AFileShortenedMeanwhileEndsEarly) {
-    const std::string path = make("a", std::string(100'000, 'z'));
+    const std::string path = write("a", std::string(100'000, 'z'));
     auto file = InputFile::open(path);
     ASSERT_TRUE(file);
     ASSERT_EQ(truncate(path.c_str(), 1000), 0);

@@ -4,14 +4,13 @@
 
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include <gtest/gtest.h>
 
 #include "mesh/gltf_buffers.h"
+#include "scratch.h"
 #include "unit/gltf_files.h"
 
 namespace tex {
@@ -19,29 +18,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class MeshIo : public testing::Test {
+class MeshIo : public testing::Test, protected Scratch {
 protected:
-    MeshIo() {
-        std::string name = (fs::temp_directory_path() / "mesh_io_XXXXXX").string();
-        folder_ = mkdtemp(name.data());
-    }
-    ~MeshIo() override { fs::remove_all(folder_); }
-
-    [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name, std::ios::binary) << bytes;
-        return (folder_ / name).string();
-    }
     [[nodiscard]] Result<Mesh> read(const std::string& bytes) const { return read_mesh(write("mesh.bin", bytes)); }
     void expect_refused(const std::string& bytes, ErrorCode code, const std::string& reason) const {
         const auto mesh = read(bytes);
         ASSERT_FALSE(mesh) << reason;
         EXPECT_EQ(mesh.error().code, code) << mesh.error().reason;
         EXPECT_EQ(mesh.error().reason, reason);
-        EXPECT_EQ(mesh.error().file, (folder_ / "mesh.bin").string());
+        EXPECT_EQ(mesh.error().file, path("mesh.bin"));
     }
-
-    fs::path folder_;
 };
 
 const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
@@ -261,7 +247,7 @@ TEST_F(MeshIo, OpensNoFileOutsideOfItsFolder) {
     const auto missing = read(maker.json(kPrimitive));
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.error().code, ErrorCode::io);
-    EXPECT_EQ(missing.error().file, (folder_ / "missing.bin").string());
+    EXPECT_EQ(missing.error().file, path("missing.bin"));
 }
 
 TEST_F(MeshIo, RefusesDamagedGlbWithOneSentence) {
@@ -379,7 +365,7 @@ TEST_F(MeshIo, RefusesOtherFiles) {
         "is not a mesh that libtex reads: glTF 2.0 (.gltf, .glb), OBJ, FBX, PLY and other types that Assimp knows";
     expect_refused("A text about meshes.\n", ErrorCode::unsupported, reason);
     expect_refused("", ErrorCode::bad_data, "is empty");
-    EXPECT_EQ(read_mesh((folder_ / "none").string()).error().code, ErrorCode::io);
+    EXPECT_EQ(read_mesh(path("none")).error().code, ErrorCode::io);
     const std::string path = write("mesh.bin", square().glb(kPrimitive));
     MeshReadOptions little;
     little.max_bytes = 100;

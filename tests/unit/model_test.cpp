@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -19,6 +18,7 @@
 #include <tex/pack.h>
 #include <tex/pipeline.h>
 
+#include "scratch.h"
 #include "unit/gltf_files.h"
 
 namespace tex {
@@ -53,32 +53,22 @@ std::string base64(const std::vector<std::byte>& bytes) {
     return text;
 }
 
-class Models : public testing::Test {
+class Models : public testing::Test, protected Scratch {
 protected:
     Models() {
-        std::string name = (fs::temp_directory_path() / "models_XXXXXX").string();
-        folder_ = mkdtemp(name.data());
         maker_.add(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3", 5126);
         maker_.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
         maker_.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
         maker_.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
     }
-    ~Models() override { fs::remove_all(folder_); }
 
     // A model of one square with these materials, textures and images.
     Result<Model> read(const std::string& rest, const std::string& material = "0") {
         const std::string primitive =
             R"({"attributes":{"POSITION":0,"NORMAL":2,"TEXCOORD_0":3},"indices":1,"material":)" + material + "}";
-        std::ofstream(folder_ / "m.glb", std::ios::binary) << maker_.glb(primitive, "," + rest);
-        return read_model((folder_ / "m.glb").string());
-    }
-    void write(const std::string& name, const std::vector<std::byte>& bytes) const {
-        fs::create_directories((folder_ / name).parent_path());
-        std::ofstream(folder_ / name, std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        return read_model(write("m.glb", maker_.glb(primitive, "," + rest)));
     }
 
-    fs::path folder_;
     GltfMaker maker_;
 };
 
@@ -121,16 +111,16 @@ TEST_F(Models, ImagesAreInViewsDataUrisAndFiles) {
 }
 
 TEST_F(Models, MapsAreReadWithoutTheGeometryTheyAreOn) {
-    std::ofstream(folder_ / "bad.gltf") << R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":
+    std::ofstream(path("bad.gltf")) << R"({"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":
         {"POSITION":7}}]}],"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],
         "images":[{"uri":"n.png"}]})";
-    EXPECT_FALSE(read_model((folder_ / "bad.gltf").string()));
-    const auto maps = read_model_maps((folder_ / "bad.gltf").string());
+    EXPECT_FALSE(read_model(path("bad.gltf")));
+    const auto maps = read_model_maps(path("bad.gltf"));
     ASSERT_TRUE(maps) << maps.error().message();
     EXPECT_EQ(maps->maps.size(), 1u);
-    EXPECT_EQ(read_model_maps((folder_ / "missing.glb").string()).error().code, ErrorCode::io);
-    std::ofstream(folder_ / "new.gltf") << R"({"asset":{"version":"2.0"},"extensionsRequired":["ACME_uvs"]})";
-    EXPECT_EQ(read_model_maps((folder_ / "new.gltf").string()).error().code, ErrorCode::unsupported);
+    EXPECT_EQ(read_model_maps(path("missing.glb")).error().code, ErrorCode::io);
+    std::ofstream(path("new.gltf")) << R"({"asset":{"version":"2.0"},"extensionsRequired":["ACME_uvs"]})";
+    EXPECT_EQ(read_model_maps(path("new.gltf")).error().code, ErrorCode::unsupported);
 }
 
 TEST_F(Models, BytesInMemoryAreReadAsAFile) {
@@ -149,7 +139,7 @@ TEST_F(Models, BytesInMemoryAreReadAsAFile) {
     EXPECT_EQ(normals->chain.levels.front().extent().height, 4);
     PackFileOptions with;
     with.source = source;
-    const std::string output = (folder_ / "x.dds").string();
+    const std::string output = path("x.dds");
     ASSERT_TRUE(pack_file("no such file", output, Container::dds, with));
     EXPECT_EQ(read_texture(output)->extent().width, 16);
     options.bytes = std::make_shared<const std::vector<std::byte>>(4, std::byte{'x'});
@@ -192,7 +182,7 @@ TEST_F(Models, ImagesOfTheSameBytesShareTheirUses) {
     EXPECT_EQ(model->images[0].uses[0].slot, "emissiveTexture");
     EXPECT_EQ(model->images[2].uses[1].slot, "occlusionTexture");
     EXPECT_EQ(model->images[4].uses.size(), 1u);
-    const auto reports = check_model((folder_ / "m.glb").string());
+    const auto reports = check_model(path("m.glb"));
     ASSERT_TRUE(reports);
     const auto& findings = reports->front().findings;
     EXPECT_TRUE(std::any_of(findings.begin(), findings.end(),
@@ -201,7 +191,7 @@ TEST_F(Models, ImagesOfTheSameBytesShareTheirUses) {
 
 // A FIFO would never end.
 TEST_F(Models, FilesThatAreNoneAreNotOpened) {
-    ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+    ASSERT_EQ(mkfifo((path("fifo")).c_str(), 0600), 0);
     const auto model =
         read(R"("materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],"images":[{"uri":"fifo"}])");
     ASSERT_TRUE(model) << model.error().message();
@@ -211,8 +201,8 @@ TEST_F(Models, FilesThatAreNoneAreNotOpened) {
     EXPECT_EQ(map.error().reason, "is not a regular file");
     GltfMaker maker = maker_;
     maker.uri = "\"uri\":\"fifo\",";
-    std::ofstream(folder_ / "b.gltf") << maker.json(R"({"attributes":{"POSITION":0}})");
-    const auto mesh = read_mesh((folder_ / "b.gltf").string());
+    std::ofstream(path("b.gltf")) << maker.json(R"({"attributes":{"POSITION":0}})");
+    const auto mesh = read_mesh(path("b.gltf"));
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.error().code, ErrorCode::io);
     EXPECT_EQ(mesh.error().reason, "is not a regular file");
@@ -233,7 +223,7 @@ TEST_F(Models, DamagedImagesAreTheirOwnErrors) {
         EXPECT_NE(texture.error().code, ErrorCode::io) << k;
     }
     EXPECT_EQ(read_map(*model, model->maps[4]).error().code, ErrorCode::io);
-    const auto reports = check_model((folder_ / "m.glb").string());
+    const auto reports = check_model(path("m.glb"));
     ASSERT_TRUE(reports);
     ASSERT_EQ(reports->size(), 5u);
     EXPECT_EQ(reports->front().map, "0: image 0");
@@ -254,12 +244,12 @@ TEST_F(Models, SelectionFindsTheMaterialWhateverNamesAre) {
 
 TEST_F(Models, OtherFilesAreNone) {
     write("a.png", picture({4, 4}));
-    EXPECT_FALSE(is_model((folder_ / "a.png").string()));
-    EXPECT_FALSE(is_model((folder_ / "none").string()));
+    EXPECT_FALSE(is_model(path("a.png")));
+    EXPECT_FALSE(is_model(path("none")));
     EXPECT_FALSE(is_model("-"));
-    EXPECT_EQ(read_model((folder_ / "a.png").string()).error().code, ErrorCode::unsupported);
+    EXPECT_EQ(read_model(path("a.png")).error().code, ErrorCode::unsupported);
     EXPECT_EQ(read_model("-").error().code, ErrorCode::unsupported);
-    EXPECT_EQ(read_model((folder_ / "none").string()).error().code, ErrorCode::io);
+    EXPECT_EQ(read_model(path("none")).error().code, ErrorCode::io);
 }
 
 // The map of a model that gltfpack made is checked where the sheet has it.

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,6 +10,8 @@
 #include <tex/file.h>
 #include <tex/height.h>
 #include <unistd.h>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -87,17 +87,9 @@ private:
     }
 };
 
-class NoData : public testing::Test {
+class NoData : public testing::Test, protected Scratch {
 protected:
-    ~NoData() override { std::filesystem::remove(path_); }
-
-    Result<Image> read(const Tiff& tiff) {
-        std::ofstream(path_, std::ios::binary) << tiff.bytes();
-        return read_image(path_);
-    }
-
-    const std::string path_ =
-        (std::filesystem::temp_directory_path() / ("no_data_test." + std::to_string(getpid()) + ".tif")).string();
+    Result<Image> read(const Tiff& tiff) { return read_image(write("a.tif", tiff.bytes())); }
 };
 
 TEST_F(NoData, IsReadFromEveryFormOfTiff) {

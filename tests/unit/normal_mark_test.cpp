@@ -3,14 +3,13 @@
 
 #include "formats/normal_mark.h"
 
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "scratch.h"
 #include "textures.h"
 
 namespace tex {
@@ -28,15 +27,8 @@ Swizzle swizzle_from(const std::string& letters) {
     return swizzle;
 }
 
-class NormalMark : public testing::Test {
+class NormalMark : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "normal_mark_XXXXXX";  // tests run side by side
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     // The texture after a trip through a file.
     Texture through(const Texture& texture, Container container) {
         const auto bytes = encode_file(texture, container);
@@ -47,7 +39,6 @@ protected:
         EXPECT_TRUE(back) << back.error().message();
         return std::move(*back);
     }
-    std::string folder_;
 };
 
 TEST(NormalMarkText, IsTheNameOfTheLayoutAndY) {

@@ -2,13 +2,14 @@
 
 #include <tex/file.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include <gtest/gtest.h>
 
 #include <unistd.h>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -49,10 +50,8 @@ TEST(Probe, ReadsNoTexels) {
     // The header of a file whose texels are missing.
     std::ifstream whole(kSamples + "bricks.png", std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(whole), std::istreambuf_iterator<char>()};
-    const fs::path cut = fs::temp_directory_path() / ("probe_test." + std::to_string(getpid()) + ".png");
-    std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
-    const auto extent = probe(cut.string());
-    fs::remove(cut);
+    const Scratch scratch;
+    const auto extent = probe(scratch.write("cut.png", bytes.substr(0, bytes.size() / 2)));
     ASSERT_TRUE(extent) << extent.error().message();
     EXPECT_EQ(*extent, read_image(kSamples + "bricks.png")->extent());
 }

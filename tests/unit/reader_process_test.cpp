@@ -6,29 +6,25 @@
 #include <sys/stat.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "files/input_file.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
-class ReaderTime : public testing::Test {
+class ReaderTime : public testing::Test, protected Scratch {
 protected:
     void SetUp() override {
-        std::string pattern = testing::TempDir() + "reader_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
         ReaderHeader header;
         header.state = ReaderState::done;
         std::ofstream file(folder_ + "/header", std::ios::binary);
         file.write(reinterpret_cast<const char*>(&header), sizeof header);
     }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
 
     // The result of finish() for this shell script, which has one second, if it is called after `wait`.
     Result<ReaderHeader> finish_after(const std::string& script, std::chrono::milliseconds wait) {
@@ -46,7 +42,6 @@ protected:
         std::this_thread::sleep_for(wait);
         return process->finish();
     }
-    std::string folder_;
 };
 
 }  // namespace

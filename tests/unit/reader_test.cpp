@@ -9,12 +9,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 
 #include "formats/reader/reader_process.h"
 #include "formats/reader/reader_rows.h"
+#include "scratch.h"
 #include "unit/tiff_maker.h"
 
 namespace tex {
@@ -250,11 +250,9 @@ TEST(Reader, FilesInMemoryGrowButDoNotShrink) {
 }
 
 TEST(Reader, FilesOnDiskAreReadThroughTheSandbox) {
-    const std::string path = testing::TempDir() + "reader_test.ppm";
-    std::ofstream(path) << "P5 2 1 255\n" << '\xff' << '\0';
-    const Result<Image> image = read_image(path, quick());
-    std::filesystem::remove(path);
-    expect_row(image, 0, {1.0f, 0.0f});
+    const Scratch scratch;
+    const std::string path = scratch.write("a.ppm", std::string("P5 2 1 255\n\xff\0", 13));
+    expect_row(read_image(path, quick()), 0, {1.0f, 0.0f});
 }
 
 TEST(Reader, TellsWhatItIs) {
@@ -272,10 +270,9 @@ TEST(Reader, TellsWhatItIs) {
 
 TEST(Reader, AMissingProgramIsNamedWithItsPackage) {
     ReadOptions options = quick();
-    const std::string folder = testing::TempDir() + "reader_alone";
-    fs::create_directory(folder);
-    options.reader = folder + "/tex-reader";
-    fs::copy_file(*find_reader({}), options.reader, fs::copy_options::overwrite_existing);
+    const Scratch alone;
+    options.reader = alone.path("tex-reader");
+    fs::copy_file(*find_reader({}), options.reader);
     Bytes ppm;
     for (const char c : std::string("P5 1 1 255\nx")) ppm.push_back(static_cast<std::byte>(c));
     const Result<Image> image = read(ppm, options);
@@ -290,7 +287,6 @@ TEST(Reader, AMissingProgramIsNamedWithItsPackage) {
     const Result<ReaderInfo> info = reader_info(options);
     ASSERT_TRUE(info) << info.error().message();
     EXPECT_EQ(info->openimageio, "");
-    fs::remove_all(folder);
 }
 
 // The programs restrict themselves, whatever threads their libraries start.

@@ -28,6 +28,7 @@
 #include <gtest/gtest.h>
 
 #include "reader.h"
+#include "scratch.h"
 #include "unit/child_text.h"
 
 namespace tex::reader {
@@ -60,12 +61,9 @@ std::string possible(const std::function<bool()>& prepare, const std::vector<Att
     });
 }
 
-class Sandbox : public testing::Test {
+class Sandbox : public testing::Test, protected Scratch {
 protected:
     void SetUp() override {
-        std::string pattern = testing::TempDir() + "sandbox_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
         std::ofstream(file_ = folder_ + "/file") << "text";
         ASSERT_EQ(pipe(pipe_), 0);
         std::ofstream(folder_ + "/nameless") << "text";  // a lease needs a file that nobody has open for writing
@@ -76,7 +74,6 @@ protected:
     }
     void TearDown() override {
         for (const int fd : {pipe_[0], pipe_[1], opened_, opened_folder_, memory_}) close(fd);
-        std::filesystem::remove_all(folder_);
     }
 
     // All of them must be possible without the sandbox, or the test proves nothing. (Some are not possible for every
@@ -212,7 +209,7 @@ protected:
         };
     }
 
-    std::string folder_, file_;
+    std::string file_;
     int pipe_[2] = {-1, -1};
     int opened_ = -1, opened_folder_ = -1, memory_ = -1;
 };

@@ -2,7 +2,6 @@
 
 #include "stream/shared_maps.h"
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <thread>
@@ -10,20 +9,17 @@
 
 #include <gtest/gtest.h>
 #include <tex/file.h>
-#include <unistd.h>
 
 #include "rows/blend_rows.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
 constexpr std::int64_t kBytes = 64 * 64 * 12;  // of a map
 
-class SharedMapsTest : public testing::Test {
+class SharedMapsTest : public testing::Test, protected Scratch {
 protected:
-    SharedMapsTest() { std::filesystem::create_directories(folder_); }
-    ~SharedMapsTest() override { std::filesystem::remove_all(folder_); }
-
     // A map of 64x64 texels.
     std::string map(const std::string& name, int lean) const {
         Texture texture;
@@ -33,8 +29,8 @@ protected:
             for (const int code : {lean, 128, 230})
                 texture.levels.front().bytes.push_back(static_cast<std::byte>(code));
         }
-        EXPECT_TRUE(write_texture(folder_ + name, texture));
-        return folder_ + name;
+        EXPECT_TRUE(write_texture(path(name), texture));
+        return path(name);
     }
     static std::shared_ptr<const HeldMap> get(SharedMaps& maps, const std::string& path, float tiling = 1.0f,
                                               const SourceOptions& options = {}, Wrap wrap = Wrap::repeat) {
@@ -43,8 +39,6 @@ protected:
         EXPECT_TRUE(map);
         return map ? *map : nullptr;
     }
-
-    const std::string folder_ = testing::TempDir() + "shared_maps." + std::to_string(getpid()) + "/";
 };
 
 TEST_F(SharedMapsTest, ReadsAMapOnceForEachWayOfReadingIt) {
@@ -80,7 +74,7 @@ TEST_F(SharedMapsTest, TakesNoMoreMemoryThanAllowed) {
     SharedMaps maps(2 * kBytes);
     const std::weak_ptr<const HeldMap> a = get(maps, map("a.png", 1)), b = get(maps, map("b.png", 2));
     EXPECT_FALSE(a.expired() || b.expired());
-    EXPECT_TRUE(get(maps, folder_ + "a.png"));
+    EXPECT_TRUE(get(maps, path("a.png")));
     const auto c = get(maps, map("c.png", 3));
     EXPECT_TRUE(b.expired()) << "it was not used for the longest time";
     EXPECT_FALSE(a.expired());
@@ -88,17 +82,17 @@ TEST_F(SharedMapsTest, TakesNoMoreMemoryThanAllowed) {
     const auto held = a.lock();
     const std::weak_ptr<const HeldMap> d = get(maps, map("d.png", 4));
     EXPECT_TRUE(d.expired());
-    EXPECT_EQ(get(maps, folder_ + "d.png"), nullptr);
+    EXPECT_EQ(get(maps, path("d.png")), nullptr);
 }
 
 TEST_F(SharedMapsTest, ErrorsAndStreamsAreLeftToTheCaller) {
     SharedMaps maps(100 * kBytes);
     EXPECT_EQ(get(maps, "-"), nullptr);
-    EXPECT_EQ(get(maps, folder_ + "missing.png"), nullptr);
-    ASSERT_TRUE(write_file(folder_ + "bad.png", std::vector<std::byte>(10)));
-    const auto bad = maps.get(folder_ + "bad.png", {}, {}, {1, {}});
+    EXPECT_EQ(get(maps, path("missing.png")), nullptr);
+    ASSERT_TRUE(write_file(path("bad.png"), std::vector<std::byte>(10)));
+    const auto bad = maps.get(path("bad.png"), {}, {}, {1, {}});
     ASSERT_FALSE(bad);
-    EXPECT_EQ(bad.error().file, folder_ + "bad.png");
+    EXPECT_EQ(bad.error().file, path("bad.png"));
 }
 
 TEST_F(SharedMapsTest, AnyThreadMayAsk) {

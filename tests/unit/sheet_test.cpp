@@ -3,7 +3,6 @@
 #include <tex/preview.h>
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include <tex/file.h>
 #include <unistd.h>
 
+#include "scratch.h"
 #include "unit/preview_pictures.h"
 
 namespace tex::render {
@@ -75,11 +75,9 @@ TEST(EncodePicture, TakesTheFewestChannels) {
     EXPECT_EQ(color_type(*colors), 2);
 
     // Reading the file must give the written picture.
+    const Scratch scratch;
     for (const auto& [png, made] : {std::pair{&*indexed, &picture}, {&*colors, &many}}) {
-        const std::string path = testing::TempDir() + "encode_picture." + std::to_string(getpid()) + ".png";
-        ASSERT_TRUE(write_file(path, *png));
-        const auto read = read_texture(path);
-        std::filesystem::remove(path);
+        const auto read = read_texture(scratch.write("picture.png", *png));
         ASSERT_TRUE(read);
         EXPECT_EQ(read->levels.front().bytes, made->levels.front().bytes);
     }

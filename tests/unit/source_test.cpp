@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include <tex/mip.h>
@@ -13,19 +12,13 @@
 
 #include "fields.h"
 #include "normal_maps.h"
+#include "scratch.h"
 
 namespace tex {
 namespace {
 
-class SourceFiles : public testing::Test {
+class SourceFiles : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "source_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        folder_ = pattern;
-    }
-    void TearDown() override { std::filesystem::remove_all(folder_); }
-
     [[nodiscard]] std::string write(const std::string& name, const Texture& texture) const {
         WriteOptions options;
         options.sync = false;
@@ -40,8 +33,6 @@ protected:
         texture.swizzle_known = texture.y_known = false;
         return texture;
     }
-
-    std::string folder_;
 };
 
 TEST_F(SourceFiles, AreReadAsTheySay) {

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// streams.h: code shared by the tests of files that are processed as streams: a separate folder, and damage.
+// streams.h: code shared by the tests of files that are processed as streams: a folder, and damage.
 
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <random>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <tex/types.h>
 
+#include "scratch.h"
 #include "unit/textures.h"
 
 namespace tex {
@@ -27,27 +24,8 @@ E any_of(const Named<E> (&table)[N], std::mt19937& random) {
     return table[random() % N].value;
 }
 
-class StreamTest : public testing::Test {
+class StreamTest : public testing::Test, protected Scratch {
 protected:
-    // Not in SetUp(), which runs after the constructors of derived fixtures: their files would lie in the root folder.
-    StreamTest() : folder_(testing::TempDir() + "stream_XXXXXX") {
-        if (mkdtemp(folder_.data()) == nullptr) throw std::runtime_error("cannot create " + folder_);
-    }
-    ~StreamTest() override {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
-    [[nodiscard]] std::string write(const std::string& name, const Bytes& bytes) const {
-        std::ofstream(path(name), std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-        return path(name);
-    }
-    [[nodiscard]] std::size_t files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
-    }
-
     // "cut" and "hurt" are damaged copies of a sound file. For them stream(input, threads) must return the same error
     // as read(input), and must not leave "out".
     template <class Read, class Stream>
@@ -67,9 +45,6 @@ protected:
             }
         }
     }
-
-private:
-    std::string folder_;
 };
 
 }  // namespace tex

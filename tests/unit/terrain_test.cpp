@@ -3,8 +3,6 @@
 
 #include "stream/terrain_rows.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -17,6 +15,8 @@
 #include <tex/file.h>
 #include <tex/format.h>
 #include <tex/pipeline.h>
+
+#include "scratch.h"
 
 namespace tex {
 namespace {
@@ -41,15 +41,8 @@ struct Grid {
     }
 };
 
-class Terrain : public testing::Test {
+class Terrain : public testing::Test, protected Scratch {
 protected:
-    Terrain()
-        : folder_((std::filesystem::temp_directory_path() / ("terrain_test." + std::to_string(getpid()))).string()) {
-        std::filesystem::create_directory(folder_);
-    }
-    ~Terrain() override { std::filesystem::remove_all(folder_); }
-
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
     [[nodiscard]] std::string tile_path(int x, int y) const {
         return path("tile_" + std::to_string(x) + "_" + std::to_string(y) + extension_);
     }
@@ -162,7 +155,6 @@ protected:
     }
 
     std::string extension_ = ".png";
-    const std::string folder_;
 };
 
 TEST_F(Terrain, EveryKernelAndBorderHasTheBytesOfTheWhole) {

@@ -21,7 +21,7 @@ using tex::Extent;
 using tex::c_maps::CallerMap;
 using tex::c_maps::CallerPlane;
 using tex::c_maps::Guarded;
-using tex::c_maps::Scratch;
+using tex::c_maps::ScratchMemory;
 
 constexpr Extent kExtents[] = {{1, 1}, {2, 3}, {15, 4}, {16, 16}, {17, 9}, {33, 21}, {130, 67}, {257, 48}};
 constexpr int32_t kWraps[] = {TEX_REPEAT, TEX_CLAMP, TEX_MIRROR};
@@ -52,7 +52,7 @@ void expect_same_bake(Extent extent, int32_t kernel, int32_t wrap_x, int32_t wra
     options.bumpiness_y = field.bumpiness_y;
     options.wrap_x = wrap_x;
     options.wrap_y = wrap_y;
-    Scratch scratch(tex_bake_size(extent.width, extent.height, &options));
+    ScratchMemory scratch(tex_bake_size(extent.width, extent.height, &options));
     const tex_plane from = heights.view();
     const tex_map to = out.view();
     const int middle = extent.height / 3;  // the rows of two callers, the lower ones first
@@ -75,7 +75,7 @@ TEST(TexC, ABakeOfHeightsThatAreNotFiniteFails) {
     heights.row(8)[39] = std::numeric_limits<float>::infinity();
     tex_bake_options options = TEX_BAKE_OPTIONS;
     options.wrap_y = TEX_CLAMP;
-    Scratch scratch(tex_bake_size(40, 9, &options));
+    ScratchMemory scratch(tex_bake_size(40, 9, &options));
     const tex_plane from = heights.view();
     const tex_map to = out.view();
     EXPECT_EQ(tex_bake(&from, &options, 0, 9, &to, scratch.data(), scratch.size()), TEX_BAD_DATA);
@@ -105,7 +105,7 @@ void expect_same_chain(Extent extent, const tex_mip_options& options) {
     for (int32_t level = 0; level + 1 < count; ++level) {
         const tex_map from = maps[static_cast<std::size_t>(level)].view();
         const tex_map to = maps[static_cast<std::size_t>(level) + 1].view();
-        Scratch scratch(tex_mip_size(from.width, from.height, &options));
+        ScratchMemory scratch(tex_mip_size(from.width, from.height, &options));
         const int32_t half = to.height / 2;
         ASSERT_EQ(tex_mip_level(&from, level, &options, half, to.height, &to, scratch.data(), scratch.size()), TEX_OK);
         ASSERT_EQ(tex_mip_level(&from, level, &options, 0, half, &to, scratch.data(), scratch.size()), TEX_OK);
@@ -154,7 +154,7 @@ void expect_same_texture(Extent extent, int32_t encoding, int32_t effort) {
     const int rows = (extent.height + info.block_height - 1) / info.block_height;
     Guarded<unsigned char> bytes(pitch * static_cast<std::size_t>(rows - 1) + row, 0xcd);
     ASSERT_EQ(tex_encode_prepare(&options), TEX_OK);
-    Scratch scratch(tex_encode_size(extent.width, &options));
+    ScratchMemory scratch(tex_encode_size(extent.width, &options));
     const int32_t middle = rows / 2 * info.block_height;
     ASSERT_EQ(tex_encode(&map, &options, middle, extent.height, bytes.data(), pitch, scratch.data(), scratch.size()),
               TEX_OK);

@@ -19,7 +19,7 @@ namespace {
 using tex::Extent;
 using tex::c_maps::CallerMap;
 using tex::c_maps::CallerPlane;
-using tex::c_maps::Scratch;
+using tex::c_maps::ScratchMemory;
 
 constexpr Extent kSizes[] = {{1, 1}, {2, 3}, {17, 9}, {130, 67}, {300, 5}};
 
@@ -96,7 +96,7 @@ TEST(TexCSurface, DebandsAsTheVerbDoes) {
             const tex_plane plane = heights.view();
             tex_deband_report report = {};
             report.size = sizeof report;
-            Scratch scratch(tex_deband_size(extent.width, extent.height));
+            ScratchMemory scratch(tex_deband_size(extent.width, extent.height));
             ASSERT_EQ(tex_deband(&plane, wrap, wrap, 1, &report, scratch.data(), scratch.size()), TEX_OK);
             heights.expect(wanted->height, 0, extent.height);
             EXPECT_EQ(report.applied == 1, wanted->report.applied);
@@ -130,7 +130,7 @@ TEST(TexCSurface, IntegratesAsTheVerbDoes) {
                 const tex_plane to = heights.view();
                 tex_integrate_report report = {};
                 report.size = sizeof report;
-                Scratch scratch(tex_integrate_size(extent.width, extent.height, &options));
+                ScratchMemory scratch(tex_integrate_size(extent.width, extent.height, &options));
                 ASSERT_EQ(tex_integrate(&from, &options, &to, &report, scratch.data(), scratch.size()), TEX_OK);
                 heights.expect(wanted->field.height, 0, extent.height);
                 EXPECT_EQ(report.highest, wanted->highest);
@@ -146,7 +146,7 @@ TEST(TexCSurface, AMapWithoutSlopesIsBadData) {
     const tex_map from = normals.view();
     const tex_plane to = heights.view();
     const tex_integrate_options options = TEX_INTEGRATE_OPTIONS;
-    Scratch scratch(tex_integrate_size(8, 8, &options));
+    ScratchMemory scratch(tex_integrate_size(8, 8, &options));
     EXPECT_EQ(tex_integrate(&from, &options, &to, nullptr, scratch.data(), scratch.size()), TEX_BAD_DATA);
 }
 
@@ -243,7 +243,7 @@ TEST(TexCRefuses, WrongArgumentsAndSmallScratch) {
     const tex_map good = map.view();
     const tex_plane heights = plane.view();
     const tex_bake_options bake = TEX_BAKE_OPTIONS;
-    Scratch scratch(tex_bake_size(20, 10, &bake));
+    ScratchMemory scratch(tex_bake_size(20, 10, &bake));
     EXPECT_EQ(tex_bake(nullptr, &bake, 0, 10, &good, scratch.data(), scratch.size()), TEX_BAD_ARGUMENT);
     EXPECT_EQ(tex_bake(&heights, nullptr, 0, 10, &good, scratch.data(), scratch.size()), TEX_BAD_ARGUMENT);
     EXPECT_EQ(tex_bake(&heights, &bake, 0, 11, &good, scratch.data(), scratch.size()), TEX_BAD_ARGUMENT);

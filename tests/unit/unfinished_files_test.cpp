@@ -15,28 +15,22 @@
 
 #include <tex/file.h>
 
+#include "scratch.h"
+
 namespace tex {
 namespace {
 
-class UnfinishedFiles : public testing::Test {
+class UnfinishedFiles : public testing::Test, protected Scratch {
 protected:
-    void SetUp() override {
-        std::string pattern = testing::TempDir() + "unfinished_files_XXXXXX";
-        ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-        path_ = pattern;
-        folder_ = open(path_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
-    }
-    void TearDown() override {
-        close(folder_);
-        std::filesystem::remove_all(path_);
-    }
+    void SetUp() override { descriptor_ = open(folder_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }
+    void TearDown() override { close(descriptor_); }
     [[nodiscard]] std::set<std::string> names() const {
         std::set<std::string> found;
-        for (const auto& entry : std::filesystem::directory_iterator(path_)) found.insert(entry.path().filename());
+        for (const auto& entry : std::filesystem::directory_iterator(folder_)) found.insert(entry.path().filename());
         return found;
     }
     void create(const std::string& name) const {
-        close(openat(folder_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
+        close(openat(descriptor_, name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
     }
 
     // The effect of body() on the folder. It runs in a separate process, which must end with status 0.
@@ -52,8 +46,7 @@ protected:
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
     }
 
-    std::string path_;
-    int folder_ = -1;
+    int descriptor_ = -1;
 };
 
 TEST_F(UnfinishedFiles, OnlyThoseThatExistAreRemoved) {
@@ -62,8 +55,8 @@ TEST_F(UnfinishedFiles, OnlyThoseThatExistAreRemoved) {
         UnfinishedFile one, two;
         {
             const NameSection section;
-            one.add(section, folder_, "one");
-            two.add(section, folder_, "two");
+            one.add(section, descriptor_, "one");
+            two.add(section, descriptor_, "two");
             two.remove(section);  // it has a different owner now
         }
         remove_unfinished_files();
@@ -78,13 +71,13 @@ TEST_F(UnfinishedFiles, APlaceIsUsedAgain) {
         {
             UnfinishedFile first;
             const NameSection section;
-            first.add(section, folder_, "first");
+            first.add(section, descriptor_, "first");
             first.remove(section);
         }
         UnfinishedFile second;
         {
             const NameSection section;
-            second.add(section, folder_, "second");
+            second.add(section, descriptor_, "second");
         }
         remove_unfinished_files();
         _exit(0);
@@ -114,11 +107,11 @@ TEST_F(UnfinishedFiles, ASignalAtAnyMomentLeavesNoTemporaryName) {
                     {
                         const NameSection section;
                         create(temporary);
-                        file.add(section, folder_, temporary);
+                        file.add(section, descriptor_, temporary);
                     }
                     const NameSection section;
                     file.remove(section);
-                    renameat(folder_, temporary.c_str(), folder_, target.c_str());
+                    renameat(descriptor_, temporary.c_str(), descriptor_, target.c_str());
                     ++written;
                 }
             };
