@@ -20,7 +20,7 @@ describe() {
     mkdir -p "$tree"
     git archive "$1" | tar -x -C "$tree"
     cmake -S "$tree" -B "$scratch/build" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_UNITY_BUILD=ON -DBUILD_TESTING=OFF \
-        -DCMAKE_CXX_FLAGS='-O1 -g -DHWY_COMPILE_ONLY_STATIC' >"$scratch/configure.log"
+        -DCMAKE_CXX_FLAGS="-O1 -g -ffile-prefix-map=$PWD/= -DHWY_COMPILE_ONLY_STATIC" >"$scratch/configure.log"
     cmake --build "$scratch/build" --target tex >"$scratch/build.log" || { tail -n 20 "$scratch/build.log"; return 1; }
     abidw --no-corpus-path --no-comp-dir-path --no-show-locs --exported-interfaces-only --drop-private-types \
         --headers-dir "$tree/libtex/include" --out-file "$2" "$scratch/build/libtex.so"

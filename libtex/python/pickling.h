@@ -187,8 +187,13 @@ void each_part(Texture& o, F& f) {
     f(o.swizzle_known);
     f(o.y_axis);
     f(o.y_known);
+    f(o.x_in_grey);
     f(o.normal_encoding);
     f(o.srgb);
+    f(o.bumpiness_x);
+    f(o.bumpiness_y);
+    f(o.orientation);
+    f(o.turned);
     f(o.trailing_bytes);
     f(o.remarks);
 }
@@ -236,6 +241,13 @@ void each_part(Mesh& o, F& f) {
 }
 
 template <class F>
+void each_part(SelectedPiece& o, F& f) {
+    f(o.name);
+    f(o.material);
+    f(o.triangle);
+}
+
+template <class F>
 void each_part(SelectedPart& o, F& f) {
     f(o.part);
     f(o.tangents);
@@ -244,6 +256,7 @@ void each_part(SelectedPart& o, F& f) {
     f(o.has_tangents);
     f(o.has_transform);
     f(o.rest);
+    f(o.pieces);
     f(o.remarks);
 }
 

@@ -162,6 +162,9 @@ void add_texture(Module& module) {
                   [](const Texture& self) { return str_of(self.normal_encoding); })
         .property("srgb", "bool", "The file declares its colours as sRGB.",
                   [](const Texture& self) { return self.srgb; })
+        .property("orientation", "int",
+                  "The orientation that the file states, 1 to 8. The texels were turned accordingly, but for PNG.",
+                  [](const Texture& self) { return self.orientation; })
         .property("trailing_bytes", "int", "Bytes beyond the levels, which were not read.",
                   [](const Texture& self) { return self.trailing_bytes; })
         .property("remarks", "list[str]", "Other faults that the reader ignored, one sentence each.",

@@ -129,7 +129,7 @@ protected:
         return found;
     }
 
-    cli::Scratch scratch_;
+    Scratch scratch_;
     std::unique_ptr<Browser> browser_;
     std::string stage_ = ".stage";
 };

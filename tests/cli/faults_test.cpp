@@ -126,7 +126,8 @@ protected:
 
     void put_old_files(bool exist) {
         for (const auto& [name, text] : outputs_) {
-            exist ? scratch_.write(name, kOld) : void(std::filesystem::remove(scratch_.path(name)));
+            std::filesystem::remove(scratch_.path(name));
+            if (exist) scratch_.write(name, kOld);
         }
     }
 

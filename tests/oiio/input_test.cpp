@@ -22,7 +22,7 @@ protected:
         EXPECT_TRUE(written) << written.error().message();
         return scratch_.path(name);
     }
-    cli::Scratch scratch_;
+    Scratch scratch_;
 };
 
 // The value in [0, 1] of a component, as packing to 16 bits stores it.

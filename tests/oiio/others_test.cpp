@@ -42,7 +42,7 @@ protected:
         const cli::Ran ran = oiio::shell(scratch_, "set -e\n" + script);
         EXPECT_EQ(ran.code, 0) << script << "\n" << ran.out << ran.err;
     }
-    cli::Scratch scratch_;
+    Scratch scratch_;
 };
 
 void expect_channel(OIIO::ImageInput& input, int channel, const Plane<float>& expected, float most) {

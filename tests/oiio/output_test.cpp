@@ -22,7 +22,7 @@ protected:
         output->write_image(TypeDesc::UINT8, pixels.data());
         return output->close() ? "" : output->geterror();
     }
-    cli::Scratch scratch_;
+    Scratch scratch_;
 };
 
 TEST_F(OiioOutput, EachWrongAttributeIsAnErrorWithoutAFile) {

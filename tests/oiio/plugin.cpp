@@ -23,7 +23,7 @@ std::unique_ptr<OIIO::ImageOutput> new_output() {
     return OIIO::ImageOutput::create("tex");
 }
 
-cli::Ran shell(const cli::Scratch& scratch, const std::string& script) {
+cli::Ran shell(const Scratch& scratch, const std::string& script) {
     return cli::shell(scratch, "export OIIO_LIBRARY_PATH='" + kFolder + "'\n" + script);
 }
 

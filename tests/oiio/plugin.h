@@ -21,7 +21,7 @@ std::unique_ptr<OIIO::ImageInput> new_input();
 std::unique_ptr<OIIO::ImageOutput> new_output();
 
 // Runs a shell script with OpenImageIO's programs, which find the plug-in, and the commands of the build.
-cli::Ran shell(const cli::Scratch& scratch, const std::string& script);
+cli::Ran shell(const Scratch& scratch, const std::string& script);
 
 // A bumpy map with all its levels.
 MipChain bumpy_chain(Extent extent);

@@ -45,7 +45,7 @@ protected:
         }
         return kinds;
     }
-    cli::Scratch scratch_;
+    Scratch scratch_;
 };
 
 // OpenImageIO's programs take long to start, so one start does all that it can.

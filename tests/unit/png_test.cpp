@@ -200,12 +200,12 @@ TEST(Png, TellsItsOrientationAndIsNotTurned) {
     }
 }
 
-TEST(Png, OrientationsAreRemarksOfTexturesAndFindings) {
+TEST(Png, OrientationsOfTexturesAreFindings) {
     const Bytes file = with_exif(make_png({PNG_COLOR_TYPE_RGB, 8, false, false}), exif_data(6, false));
     const Result<Texture> texture = read_texture(file, "turned.png");
     ASSERT_TRUE(texture);
     EXPECT_EQ(texture->orientation, 6);
-    ASSERT_EQ(texture->remarks.size(), 1u);
+    EXPECT_FALSE(texture->turned);
     const auto report = check("turned.png", *texture);
     ASSERT_TRUE(report);
     std::vector<std::string> found;

@@ -312,9 +312,10 @@ struct Texture {
     // known.
     float bumpiness_x = 0.0f, bumpiness_y = 0.0f;
 
-    // The orientation that the file states, 1 to 8, as in TIFF and EXIF. The texels have been turned accordingly, but
-    // not those of PNG, of which a remark says so. The vectors in them are as they are stored.
+    // The orientation that the file states, 1 to 8, as in TIFF and EXIF, and whether the texels have been turned
+    // accordingly: those of PNG are not. The vectors in them are as they are stored.
     int orientation = 1;
+    bool turned = true;
 
     // Bytes beyond the levels, which were not read: after the last one, and in KTX2 between them, too.
     std::uint64_t trailing_bytes = 0;

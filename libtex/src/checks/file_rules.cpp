@@ -126,14 +126,11 @@ void check_astc_layout(const CheckContext& context, Findings& findings) {
 void check_file_rules(const CheckContext& context, Findings& findings) {
     const Texture& texture = context.texture;
     const Requirements& require = context.options.require;
-    const bool is_ignored = ignores_orientation(texture);
-    for (const std::string& remark : texture.remarks) {
-        if (!is_ignored || remark != ignored_orientation_text(texture.orientation)) findings.add("N102", remark);
-    }
+    for (const std::string& remark : texture.remarks) findings.add("N102", remark);
     if (texture.trailing_bytes > 0) findings.add("N104", trailing_text(texture.trailing_bytes));
     if (texture.orientation != 1)
         findings.add("N116", "the orientation is " + std::to_string(texture.orientation) + " instead of 1" +
-                                 (is_ignored ? ", and the texels were read as they are stored" : ""));
+                                 (texture.turned ? "" : ", and the texels were read as they are stored"));
     check_format(texture, context.stored.swizzle, require, findings);
     check_levels(texture, require, findings);
     check_extent(texture, require, findings);

@@ -16,18 +16,11 @@
 
 namespace tex::inline v1 {
 
-std::string orientation_text(int orientation) {
-    return "the picture was turned or mirrored, as its orientation (" + std::to_string(orientation) + ") says";
-}
-
-std::string ignored_orientation_text(int orientation) {
+std::string orientation_text(int orientation, bool is_turned) {
+    if (is_turned)
+        return "the picture was turned or mirrored, as its orientation (" + std::to_string(orientation) + ") says";
     return "the picture was not turned or mirrored as its orientation (" + std::to_string(orientation) +
            ") says, because PNG is read as it is stored; turn it in an editor, or remove the orientation";
-}
-
-bool ignores_orientation(const Texture& head) {
-    return head.orientation != 1 && std::find(head.remarks.begin(), head.remarks.end(),
-                                              ignored_orientation_text(head.orientation)) != head.remarks.end();
 }
 
 std::string trailing_text(std::uint64_t bytes) {

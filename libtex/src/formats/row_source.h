@@ -27,13 +27,8 @@ namespace tex::inline v1 {
 inline constexpr const char* kMultipliedText =
     "R, G and B are multiplied by alpha, as the file says, and are read as they are stored";
 
-// What a picture's orientation, which is not 1, means for it, as a sentence: of a picture that was turned accordingly,
-// and of one that was not.
-std::string orientation_text(int orientation);
-std::string ignored_orientation_text(int orientation);
-
-// Whether the remarks of a texture say that it was not turned.
-bool ignores_orientation(const Texture& head);
+// What a picture's orientation, which is not 1, means for it, as a sentence.
+std::string orientation_text(int orientation, bool is_turned);
 
 // What Texture::trailing_bytes, which is not 0, means, as a sentence.
 std::string trailing_text(std::uint64_t bytes);
@@ -61,10 +56,9 @@ public:
     // Of heights: the strength that the file states (Texture::bumpiness_x).
     [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
     [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
+    [[nodiscard]] bool is_turned() const { return is_turned_; }     // Texture::turned
     // The file says that colours were multiplied by alpha. They are read as they are stored.
     [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
-    // Whether the rows are turned as the orientation says; if not, the remark says so.
-    [[nodiscard]] bool is_turned() const { return is_turned_; }
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -138,8 +132,7 @@ protected:
     void describe_orientation(int orientation, bool is_turned = true) {
         orientation_ = orientation;
         is_turned_ = is_turned;
-        if (orientation != 1)
-            remark_ = is_turned ? orientation_text(orientation) : ignored_orientation_text(orientation);
+        if (orientation != 1) remark_ = orientation_text(orientation, is_turned);
     }
     void describe_numbers(double scale, double offset) {
         has_numbers_ = true;

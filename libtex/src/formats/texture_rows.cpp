@@ -28,8 +28,8 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     texture.head = std::move(picture->head);
     texture.head.normal_encoding = (*rows)->normal_encoding();
     texture.head.orientation = (*rows)->orientation();
+    texture.head.turned = (*rows)->is_turned();
     if ((*rows)->is_multiplied()) texture.head.remarks.emplace_back(kMultipliedText);
-    if (!(*rows)->is_turned()) texture.head.remarks.push_back((*rows)->remark());
     apply_found_mark((*rows)->normal_mark(), texture.head);
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);

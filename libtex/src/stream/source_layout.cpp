@@ -48,8 +48,9 @@ SourceInfo source_info(const Texture& head, const Swizzle& swizzle, const Source
     info.srgb = head.srgb;
     info.remarks = head.remarks;
     if (head.trailing_bytes > 0) info.remarks.push_back(trailing_text(head.trailing_bytes));
-    if (head.orientation != 1 && !ignores_orientation(head))
-        info.remarks.push_back(orientation_text(head.orientation) + "; vectors stay as they are stored");
+    if (head.orientation != 1)
+        info.remarks.push_back(orientation_text(head.orientation, head.turned) +
+                               (head.turned ? "; vectors stay as they are stored" : ""));
     return info;
 }
 
