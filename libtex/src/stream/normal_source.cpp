@@ -2,16 +2,20 @@
 
 #include "stream/normal_source.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "formats/texture_rows.h"
+#include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
 #include "stream/filled_map.h"
 #include "stream/map_inspector.h"
 #include "stream/measured_y.h"
 #include "stream/other_channels.h"
 #include "stream/source_layout.h"
+#include "threads/parallel.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -40,14 +44,29 @@ Result<void> look_at_others(const Texture& texture, const SourceOptions& options
     if (!sources) return sources.error();
     OtherChannels others(texture, texture.extent(), *sources, options);
     if (others.empty()) return {};
-    const Result<Image> image = decode(texture, 0, execution.quiet());
-    if (!image) return image.error();
+    const Level& base = texture.levels.front();
     const NormalMap& map = source.chain.levels.front();
-    for (int j = 0; j < map.extent().height; ++j) {
-        const float* row[4] = {};
-        for (std::size_t c = 0; c < image->planes.size(); ++c) row[c] = image->planes[c].row(j);
-        others.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, map.extent().width);
-    }
+    const int width = base.extent.width, height = base.extent.height, together = strip_rows_of(texture.format);
+    const auto look = [&](int begin, int end) {
+        Plane<float> strip({width, together * channels});
+        const std::ptrdiff_t stride = strip.stride();
+        ChannelRows rows;
+        for (int c = 0; c < channels; ++c) rows.channel[c] = strip.row(c * together);
+        for (int k = begin; k < end; ++k) {
+            bool is_decoded = false;
+            for (int j = k * together; j < std::min(height, (k + 1) * together); ++j) {
+                if (!others.wants_row(j)) continue;
+                if (!is_decoded) decode_strip(texture.format, base, k, rows, stride);
+                is_decoded = true;
+                const float* row[4] = {};
+                for (int c = 0; c < channels; ++c) row[c] = rows.channel[c] + (j - k * together) * stride;
+                others.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, width);
+            }
+        }
+    };
+    const Result<void> looked = parallel_for(execution.quiet(), (height + together - 1) / together,
+                                             strips_at_once(base.extent, together), look);
+    if (!looked) return looked.error();
     source.info.others = others.report(source.info);
     return {};
 }

@@ -28,6 +28,11 @@ public:
     // The channels to look at: bit c is set for channel c.
     [[nodiscard]] bool wants(int channel) const;
 
+    // Whether add_row() does anything with row j.
+    [[nodiscard]] bool wants_row(int j) const {
+        return !seen_.empty() || lengths_ || is_floating_ || (judges_z_ && j % z_step_ == 0);
+    }
+
     // Adds row j: its channels, of which those that are not wanted and hold no normals may be null, and its normals.
     // Rows may come in any order, from any thread.
     void add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width);
