@@ -63,6 +63,16 @@ TEST_P(EveryCommand, VersionIsOneLineOrJson) {
     EXPECT_FALSE(json["instruction_set"].get<std::string>().empty());
 }
 
+// See kernels/target.cpp: half of the time of `--version`.
+TEST_P(EveryCommand, StartsWithoutMeasuringTheClock) {
+    Setting bindings;
+    bindings.environment = {"LD_DEBUG=bindings"};
+    for (const std::string& line : lines_of(run(scratch_, GetParam(), {"--version"}, bindings).err)) {
+        if (line.find("libhwy") == std::string::npos || line.find("TimerResolution") == std::string::npos) continue;
+        EXPECT_EQ(line.substr(line.find(" to ")).find("libhwy"), std::string::npos) << line;
+    }
+}
+
 TEST_P(EveryCommand, AFullDiskBehindStandardOutputIsAnError) {
     Setting full;
     full.stdout_path = "/dev/full";
