@@ -65,7 +65,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
     command
         .option("--least-response", "R", "leave out what the kernel sees with less than R of a derivative's strength",
                 [this](const std::string& text) {
-                    least_response_ = cli::parse_double(text, {0.0, 1.0, false});
+                    least_response_ = cli::parse_double(text, {1e-6, 1.0});
                 })
         .preset = "0.1 for 8 bits, else 0.001, or 0.003 for sobel5 and gaussian";
     stored_.add(command);

@@ -18,6 +18,7 @@
 namespace tex::inline v1 {
 
 Result<void> validate(const BakeOptions& options) {
+    if (auto known = check_known("kernel", kGradientKernelNames, options.kernel); !known) return known;
     const bool in_range = options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma;
     if (options.kernel != GradientKernel::gaussian || in_range) return {};
     return bad_option("gaussian_sigma: must be above 0 and at most 64");
@@ -28,6 +29,9 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
     return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(extent, "the height field"); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
+        const auto wraps = first_error(check_known("wrap_x", kWrapNames, field.wrap_x),
+                                       check_known("wrap_y", kWrapNames, field.wrap_y));
+        if (!wraps) return wraps.error();
         if (!std::isfinite(field.bumpiness_x) || !std::isfinite(field.bumpiness_y))
             return bad_option("bumpiness: must be finite");
         NormalMap map(extent);
@@ -55,6 +59,7 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
 
 SlopeRange slope_range(const NormalMap& map, const Execution& execution) {
     const Extent extent = map.extent();
+    if (extent.texels() == 0) return {};
     SlopeCollector slopes(std::numeric_limits<float>::infinity(), true);
     const auto body = [&](int begin, int end) { slopes.add(map, begin, end); };
     const Execution silent = execution.quiet();

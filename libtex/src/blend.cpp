@@ -53,8 +53,13 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
 
 Result<void> validate(const BlendOptions& options) {
     if (!(std::abs(options.base_scale) <= kMaxScale)) return bad_option("base_scale: must be at most 1e6 in magnitude");
-    if (options.extent == Extent{}) return {};
-    return check_usable(options.extent, "extent");
+    if (options.extent != Extent{}) {
+        if (auto usable = check_usable(options.extent, "extent"); !usable) return usable;
+    }
+    return first_error(check_known("mode", kBlendModeNames, options.mode),
+                       check_known("scale_mode", kScaleModeNames, options.scale_mode),
+                       check_known("wrap_x", kWrapNames, options.wrap_x),
+                       check_known("wrap_y", kWrapNames, options.wrap_y));
 }
 
 Result<void> validate(const Layer& layer) {
@@ -67,7 +72,8 @@ Result<void> validate(const Layer& layer) {
         return bad_option("offset: must be at most 4096 in magnitude");
     if (!std::isfinite(layer.rotation)) return bad_option("rotation: must be finite");
     if (!(layer.strength >= 0.0f && layer.strength <= 1.0f)) return bad_option("strength: must be from 0 to 1");
-    return {};
+    return first_error(check_known("wrap_x", kWrapNames, layer.wrap_x),
+                       check_known("wrap_y", kWrapNames, layer.wrap_y));
 }
 
 Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,

@@ -216,16 +216,37 @@ Result<void> validate(const CheckOptions& options) {
         }
     }
     for (const auto& [name, severity] : options.severity) {
-        if (auto found = known(name); !found) return found;
+        if (auto found = first_error(known(name), check_known("severity", kSeverityNames, severity)); !found)
+            return found;
     }
-    return {};
+    return first_error(check_known("require.format", kFormatNames, options.require.format),
+                       check_known("require.encoding", kEncodingNames, options.require.encoding),
+                       check_known("require.y", kYAxisNames, options.require.y));
 }
 
+namespace {
+
+// A check runs dozens of loops, and which ones depends on the map. Each reports 0 to 1: it takes half of what is left
+// of the progress of the whole.
+Execution in_halves(const Execution& execution) {
+    if (!execution.progress) return execution;
+    Execution halves = execution.quiet();
+    halves.progress = [&execution, from = 0.0, last = 0.0](double done) mutable {
+        if (done < last) from += 0.5 * (1.0 - from);
+        last = done;
+        return execution.progress(from + 0.5 * (1.0 - from) * done);
+    };
+    return halves;
+}
+
+}  // namespace
+
 Result<CheckReport> check(const std::string& file, const Texture& texture, const CheckOptions& options,
-                          const Execution& execution) {
+                          const Execution& whole) {
     return no_throw([&]() -> Result<CheckReport> {
         if (auto usable = check_usable(texture); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
+        const Execution execution = in_halves(whole);
         CheckContext context{.texture = texture, .options = options, .execution = execution, .file = file};
         if (auto done = measure(context); !done) return done.error();
         Findings findings(options);
@@ -254,6 +275,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         report.more_data = context.has_vectors && has_more_data(context.stored, context.counts);
         report.y = context.y;
         if (options.mesh != nullptr && context.has_vectors) report.y_on_mesh = y_on_mesh(context);
+        if (whole.progress && !whole.progress(1.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         return report;
     });
 }

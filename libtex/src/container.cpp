@@ -84,7 +84,7 @@ Result<void> validate(const WriteOptions& options) {
     if (options.zstd < 0 || options.zstd > kHighestZstdLevel) return bad_option("zstd: must be from 0 to 22");
     const int quality = options.jpeg_quality;
     if (quality < 1 || quality > 100) return bad_option("jpeg_quality: must be from 1 to 100");
-    return {};
+    return check_known("dds_header", kDdsHeaderNames, options.dds_header);
 }
 
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,

@@ -56,7 +56,10 @@ Result<Curvature> measured(const NormalMap& map, const CurvatureOptions& options
 
 Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<Curvature> {
-        if (auto usable = check_usable(map); !usable) return usable.error();
+        const auto usable = first_error(check_usable(map), check_known("kind", kCurvatureKindNames, options.kind),
+                                        check_known("wrap_x", kWrapNames, options.wrap_x),
+                                        check_known("wrap_y", kWrapNames, options.wrap_y));
+        if (!usable) return usable.error();
         return measured(map, options, execution);
     });
 }

@@ -13,7 +13,10 @@ namespace tex::inline v1 {
 
 Result<DebandedField> deband(HeightField field, Deband when, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<DebandedField> {
-        if (auto usable = check_usable(field.height.extent(), "the height field"); !usable) return usable.error();
+        const auto usable = first_error(
+            check_usable(field.height.extent(), "the height field"), check_known("when", kDebandNames, when),
+            check_known("wrap_x", kWrapNames, field.wrap_x), check_known("wrap_y", kWrapNames, field.wrap_y));
+        if (!usable) return usable.error();
         auto report = deband_heights(field.height, field.wrap_x, field.wrap_y, when, execution, {});
         if (!report) return report.error();
         return DebandedField{std::move(field), *report};

@@ -134,7 +134,10 @@ static_assert([] {
 
 }  // namespace
 
-FormatInfo format_info(Format format) { return kFormats[static_cast<std::size_t>(format)].info; }
+FormatInfo format_info(Format format) {
+    const auto at = static_cast<std::size_t>(format);
+    return at < std::size(kFormats) ? kFormats[at].info : FormatInfo{SampleKind::unorm, 0, 0, {1, 1}, 0};
+}
 
 OtherPlanes can_hold(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
@@ -176,6 +179,9 @@ std::string to_string(const Swizzle& swizzle) {
     return letters;
 }
 
-EncodingInfo encoding_info(Encoding encoding) { return kEncodings[static_cast<std::size_t>(encoding)].info; }
+EncodingInfo encoding_info(Encoding encoding) {
+    const auto at = static_cast<std::size_t>(encoding);
+    return at < std::size(kEncodings) ? kEncodings[at].info : EncodingInfo{};
+}
 
 }  // namespace tex::inline v1

@@ -75,10 +75,12 @@ Result<void> validate(const IntegrateOptions& options) {
     }
     if (!(options.least_z > 0.0f && options.least_z <= 1.0f))
         return bad_option("least_z: must be above 0 and at most 1");
-    if (!(options.least_response >= 0.0f && options.least_response <= 1.0f))
-        return bad_option("least_response: must be from 0 to 1");
+    constexpr float kLeast = 1e-6f;  // below, a response is nothing but the rounding of floats
+    if (options.least_response != 0.0f && !(options.least_response >= kLeast && options.least_response <= 1.0f))
+        return bad_option("least_response: must be from 1e-6 to 1, or 0");
     if (options.most_steps < 1) return bad_option("most_steps: must be 1 or more");
-    return {};
+    return first_error(check_known("wrap_x", kWrapNames, options.wrap_x),
+                       check_known("wrap_y", kWrapNames, options.wrap_y));
 }
 
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {

@@ -109,7 +109,11 @@ Result<void> validate(const MipOptions& options) {
         return bad_option("any_z: needs the domain vector and no fade");
     if (options.follow_normals() && options.domain != MipDomain::vector)
         return bad_option("blue and alpha: roughness and gloss need the domain vector");
-    return {};
+    return first_error(
+        check_known("filter", kMipFilterNames, options.filter), check_known("domain", kMipDomainNames, options.domain),
+        check_known("wrap_x", kWrapNames, options.wrap_x), check_known("wrap_y", kWrapNames, options.wrap_y),
+        check_known("blue", kOtherKindNames, options.blue), check_known("alpha", kOtherKindNames, options.alpha),
+        check_known("roughness", kRoughnessModelNames, options.roughness));
 }
 
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {

@@ -71,7 +71,9 @@ Result<void> validate(const PackOptions& options) {
     if (!(rdo.max >= 0.0f && rdo.max <= 180.0f)) return bad_option("rdo.max: must be from 0 to 180");
     if (rdo.window < kLeastRdoWindow || rdo.window > kMostRdoWindow)
         return bad_option("rdo.window: must be from 64 to 1048576");
-    return {};
+    return first_error(
+        check_known("encoding", kEncodingNames, options.encoding), check_known("y_axis", kYAxisNames, options.y_axis),
+        check_known("effort", kEffortNames, options.effort), check_known("metric", kMetricNames, options.metric));
 }
 
 Result<PackedTexture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {

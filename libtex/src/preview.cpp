@@ -246,8 +246,13 @@ Result<Texture> show(const Job& job) {
 }  // namespace
 
 Result<void> validate(const PreviewOptions& options) {
-    if (auto sound = check_light(options); !sound) return sound;
-    return check_geometry(options);
+    return first_error(check_light(options), check_geometry(options), check_known("show", kShowNames, options.show),
+                       check_known("shape", kShapeNames, options.shape),
+                       check_known("scale_mode", kScaleModeNames, options.scale_mode),
+                       check_known("wrap_x", kWrapNames, options.wrap_x),
+                       check_known("wrap_y", kWrapNames, options.wrap_y),
+                       check_known("light.kind", kLightKindNames, options.light.kind),
+                       check_known("material.model", kSpecularModelNames, options.material.model));
 }
 
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {

@@ -28,8 +28,8 @@ Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execu
         span);
 }
 
-Result<void> check_scale(float scale) {
-    if (std::abs(scale) <= kMaxScale) return {};  // not for NaN
+Result<void> check_scale(float scale, ScaleMode mode) {
+    if (std::abs(scale) <= kMaxScale) return check_known("mode", kScaleModeNames, mode);  // not for NaN
     return bad_option("scale: must be at most 1e6 in magnitude");
 }
 
@@ -38,7 +38,7 @@ Result<void> check_scale(float scale) {
 Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<NormalMap> {
         if (auto usable = check_usable(map); !usable) return usable.error();
-        if (auto valid = check_scale(scale); !valid) return valid.error();
+        if (auto valid = check_scale(scale, mode); !valid) return valid.error();
         if (const auto scaled = scale_rows(map, scale, mode, execution, {}); !scaled) return scaled.error();
         return std::move(map);
     });
@@ -47,7 +47,7 @@ Result<NormalMap> scale(NormalMap map, float scale, ScaleMode mode, const Execut
 Result<MipChain> scale(MipChain chain, float scale, ScaleMode mode, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<MipChain> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
-        if (auto valid = check_scale(scale); !valid) return valid.error();
+        if (auto valid = check_scale(scale, mode); !valid) return valid.error();
         double texels = 0.0;
         for (const NormalMap& level : chain.levels) texels += static_cast<double>(level.extent().texels());
         double done = 0.0;

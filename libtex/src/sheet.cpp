@@ -86,6 +86,7 @@ Result<Texture> picture_of(const Image& image) {
 
 Result<std::vector<std::byte>> encode_picture(const Texture& picture) {
     return no_throw([&]() -> Result<std::vector<std::byte>> {
+        if (picture.levels.empty()) return Error{ErrorCode::bad_option, {}, "the picture has no level"};
         const Level& level = picture.levels.front();
         const auto count = static_cast<std::size_t>(level.extent.texels());
         const auto* bytes = reinterpret_cast<const std::uint8_t*>(level.bytes.data());
@@ -161,6 +162,7 @@ Result<Texture> contact_sheet(const std::vector<Panel>& panels, int columns) {
 Result<Texture> split_view(const Panel& left, const Panel& right) {
     return no_throw([&]() -> Result<Texture> {
         const Extent extent = left.picture.extent();
+        if (extent == Extent{}) return Error{ErrorCode::bad_option, {}, "a split view needs two pictures"};
         if (extent != right.picture.extent())
             return Error{ErrorCode::bad_option, {}, "the two pictures differ in size"};
         const int scale = render::text_scale(extent.width), middle = extent.width / 2;

@@ -229,7 +229,8 @@ Result<void> validate(const TransferOptions& options) {
     if (options.rays_per_hit < 1 || options.rays_per_hit > kMaxRaysPerHit)
         return bad_option("rays_per_hit: must be from 1 to 4096");
     if (!is_length(options.occlusion_distance)) return bad_option("occlusion_distance: must be 0 or more");
-    return {};
+    return first_error(check_known("rays", kRayModeNames, options.rays),
+                       check_known("hit", kHitChoiceNames, options.hit));
 }
 
 Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,

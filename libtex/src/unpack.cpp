@@ -236,6 +236,11 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
     return map;
 }
 
+Result<void> check_options(const UnpackOptions& options) {
+    return first_error(check_known("y_axis", kYAxisNames, options.y_axis),
+                       check_known("range", kValueRangeNames, options.range));
+}
+
 }  // namespace
 
 Result<Image> decode(const Texture& texture, int level, const Execution& execution) {
@@ -243,7 +248,9 @@ Result<Image> decode(const Texture& texture, int level, const Execution& executi
         if (level < 0 || static_cast<std::size_t>(level) >= texture.levels.size())
             return bad_option("level: the texture has no level " + std::to_string(level));
         const Level& chosen = texture.levels[static_cast<std::size_t>(level)];
-        if (auto usable = check_usable(chosen.extent, "the level"); !usable) return usable.error();
+        const auto usable =
+            first_error(check_usable(chosen.extent, "the level"), check_known("format", kFormatNames, texture.format));
+        if (!usable) return usable.error();
         if (chosen.bytes.size() != level_bytes(texture.format, chosen.extent))
             return bad_option("the level does not have the bytes of its format and extent");
         return decode_planes(texture, chosen, {}, execution);
@@ -273,14 +280,14 @@ Result<void> decode_blocks(Format format, const std::byte* bytes, std::size_t pi
 
 Result<MipChain> unpack(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<MipChain> {
-        if (auto usable = check_usable(texture); !usable) return usable.error();
+        if (auto usable = first_error(check_usable(texture), check_options(options)); !usable) return usable.error();
         return unpack_levels(texture, options, execution);
     });
 }
 
 Result<NormalMap> unpack(const Image& image, const UnpackOptions& options, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<NormalMap> {
-        if (auto usable = check_usable(image); !usable) return usable.error();
+        if (auto usable = first_error(check_usable(image), check_options(options)); !usable) return usable.error();
         return unpack_image(image, options, execution);
     });
 }

@@ -7,8 +7,8 @@
 #                 sources state the same version
 #     --key       the signature of SHA256SUMS, by minisign or signify
 #     --clone     the sources are those of the commit that the SBOM names, in a clone that you trust: bit for bit
-#     --rebuild   with --clone: everything is made again from that commit, and has the same sums, in any folder. It needs
-#                 the compiler and the packages of the release, which the SBOM lists
+#     --rebuild   with --clone: everything is made again from that commit, and has the same sums, in any folder. It
+#                 needs the compiler and the packages of the release, which the SBOM lists
 set -euo pipefail
 export LC_ALL=C
 fail() { echo "verify-release.sh: $*" >&2; exit 1; }

@@ -298,6 +298,20 @@ TEST(Check, StopsWhenAsked) {
     EXPECT_EQ(report.error().code, ErrorCode::cancelled);
 }
 
+TEST(Check, ProgressNeverDecreases) {
+    std::vector<double> fractions;
+    Execution execution;
+    execution.progress = [&](double done) {
+        fractions.push_back(done);
+        return true;
+    };
+    ASSERT_TRUE(check("map", map_texture(), {}, execution));
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_GT(fractions.size(), 5u);
+    EXPECT_EQ(fractions.back(), 1.0);
+    EXPECT_LT(fractions.front(), 1.0);
+}
+
 TEST(Check, TexturesOfOneTexelAreChecked) {
     EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({1, 1})))), Ids{});
     EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({3, 2})))), Ids{});

@@ -296,6 +296,52 @@ TEST(Integrate, RefusesObjectSpaceAndMapsWithoutSlopes) {
     EXPECT_NE(vertical.error().reason.find("z is 0 or not finite everywhere"), std::string::npos);
 }
 
+TEST(Integrate, RefusesHeightsThatFloatsCannotHold) {
+    NormalMap map({64, 64});
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const float x = i % 2 == 0 ? -1.0f : 1.0f, y = static_cast<float>((i * 37 + j * 91) % 101) / 101.0f - 0.5f;
+            const float z = 2e-6f, length = std::sqrt(x * x + y * y + z * z);
+            map.x.at(i, j) = x / length;
+            map.y.at(i, j) = y / length;
+            map.z.at(i, j) = z / length;
+        }
+    }
+    IntegrateOptions options;
+    options.bumpiness_x = 1e-20f;
+    const auto heights = integrate(map, options);
+    ASSERT_FALSE(heights);
+    EXPECT_EQ(heights.error().code, ErrorCode::bad_data);
+    EXPECT_EQ(heights.error().reason, "the heights do not fit floats: slopes are too steep");
+}
+
+// With the least response that is allowed, rounding is amplified, but not beyond what the header says of it.
+TEST(Integrate, TheLeastResponseKeepsHeightsInBounds) {
+    HeightField field;
+    field.height = Plane<float>({48, 40});
+    field.bumpiness_x = field.bumpiness_y = 8.0f;
+    for (int j = 0; j < 40; ++j) {
+        for (int i = 0; i < 48; ++i)
+            field.height.at(i, j) =
+                0.5f + 0.3f * std::sin(0.3f * static_cast<float>(i)) * std::cos(0.3f * static_cast<float>(j));
+    }
+    for (const Named<GradientKernel>& kernel : kGradientKernelNames) {
+        BakeOptions bake_options{kernel.value};
+        const NormalMap map = *bake(field, bake_options);
+        for (const auto& [x, y] :
+             {std::pair{Wrap::repeat, Wrap::repeat}, {Wrap::clamp, Wrap::repeat}, {Wrap::mirror, Wrap::clamp}}) {
+            IntegrateOptions options;
+            options.bake = bake_options;
+            options.wrap_x = x;
+            options.wrap_y = y;
+            options.least_response = 1e-6f;
+            const auto heights = integrate(map, options);
+            ASSERT_TRUE(heights) << kernel.name << ": " << heights.error().message();
+            EXPECT_LT(heights->highest, 1e4f) << kernel.name;
+        }
+    }
+}
+
 TEST(Integrate, FlatMapsAndSingleTexelsAreFlat) {
     for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{9, 1}, Extent{2, 2}, Extent{13, 8}}) {
         for (const Wrap wrap : kWraps) {

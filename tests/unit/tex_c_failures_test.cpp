@@ -132,8 +132,13 @@ TEST(TexCFailures, OfStructuresOfAnotherSize) {
     newer.later = 1;
     EXPECT_EQ(bake(), TEX_BAD_OPTION);
     EXPECT_EQ(tex_bake_size(8, 8, &newer.options), 0u);
-    newer.options.size = sizeof(tex_bake_options) - 1;
-    EXPECT_EQ(bake(), TEX_BAD_ARGUMENT);
+    for (const std::uint32_t size : {std::uint32_t{sizeof(tex_bake_options)} - 1, 4097u, 0xFFFFFFFFu}) {
+        newer.options.size = size;
+        EXPECT_EQ(bake(), TEX_BAD_ARGUMENT) << size;
+    }
+    tex_format_info info;
+    info.size = 0xFFFFFFFFu;
+    EXPECT_EQ(tex_get_format(0, &info), TEX_BAD_ARGUMENT);
 }
 
 // What other tests of the process have prepared stays prepared, so these calls are made in a process of their own.

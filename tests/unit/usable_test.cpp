@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -132,6 +133,8 @@ TEST(Usable, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(of<IntegrateOptions>([](auto& o) { o.bumpiness_y = 0.0f; }),
               "bumpiness: must be from 1e-20 to 1e20 in magnitude");
     EXPECT_EQ(of<IntegrateOptions>([](auto& o) { o.least_z = 0.0f; }), "least_z: must be above 0 and at most 1");
+    EXPECT_EQ(of<IntegrateOptions>([](auto& o) { o.least_response = 1e-7f; }),
+              "least_response: must be from 1e-6 to 1, or 0");
     EXPECT_EQ(of<ConvertOptions>([](auto& o) { o.padding = -1; }), "padding: must be 0 or more");
     EXPECT_EQ(of<ConvertOptions>([](auto& o) { o.subsamples = 9; }), "subsamples: must be from 1 to 8");
     EXPECT_EQ(of<TransferOptions>([](auto& o) { o.front = {Reach::Unit::percent, -1.0}; }), "front: must be 0 or more");
@@ -155,6 +158,78 @@ TEST(Usable, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(refusal(validate({Step(PackFileOptions()), Step(BakeFileOptions())})),
               "steps: only the first one can bake");
     EXPECT_EQ(refusal(apply_steps("none.png", {}, "none.dds", Container::dds)), "steps: there must be at least one");
+}
+
+// Bindings and newer callers can hand over numbers that no enumerator has.
+TEST(Usable, UnknownEnumeratorsAreNamed) {
+    constexpr int kUnknown[] = {99, -2, 1 << 20};
+    for (const int number : kUnknown) {
+        const auto set = [number](auto member) {
+            return [number, member](auto& o) {
+                auto& value = member(o);
+                value = static_cast<std::remove_reference_t<decltype(value)>>(number);
+            };
+        };
+#define EXPECT_NAMED(Options, name) \
+    EXPECT_EQ(of<Options>(set([](auto& o) -> auto& { return o.name; })), #name ": is none of its enumerators")
+        EXPECT_NAMED(BakeOptions, kernel);
+        EXPECT_NAMED(MipOptions, filter);
+        EXPECT_NAMED(MipOptions, domain);
+        EXPECT_NAMED(MipOptions, wrap_x);
+        EXPECT_NAMED(MipOptions, wrap_y);
+        EXPECT_NAMED(MipOptions, blue);
+        EXPECT_NAMED(MipOptions, alpha);
+        EXPECT_NAMED(MipOptions, roughness);
+        EXPECT_NAMED(PackOptions, encoding);
+        EXPECT_NAMED(PackOptions, y_axis);
+        EXPECT_NAMED(PackOptions, effort);
+        EXPECT_NAMED(PackOptions, metric);
+        EXPECT_NAMED(BlendOptions, mode);
+        EXPECT_NAMED(BlendOptions, scale_mode);
+        EXPECT_NAMED(BlendOptions, wrap_x);
+        EXPECT_NAMED(BlendOptions, wrap_y);
+        EXPECT_NAMED(Layer, wrap_x);
+        EXPECT_NAMED(Layer, wrap_y);
+        EXPECT_NAMED(IntegrateOptions, wrap_x);
+        EXPECT_NAMED(IntegrateOptions, wrap_y);
+        EXPECT_NAMED(TransferOptions, rays);
+        EXPECT_NAMED(TransferOptions, hit);
+        EXPECT_NAMED(HeightOptions, channel);
+        EXPECT_NAMED(HeightOptions, deband);
+        EXPECT_NAMED(HeightOptions, wrap_x);
+        EXPECT_NAMED(HeightOptions, wrap_y);
+        EXPECT_NAMED(PreviewOptions, show);
+        EXPECT_NAMED(PreviewOptions, shape);
+        EXPECT_NAMED(PreviewOptions, scale_mode);
+        EXPECT_NAMED(PreviewOptions, wrap_x);
+        EXPECT_NAMED(PreviewOptions, wrap_y);
+        EXPECT_NAMED(PreviewOptions, light.kind);
+        EXPECT_NAMED(PreviewOptions, material.model);
+        EXPECT_NAMED(WriteOptions, dds_header);
+#undef EXPECT_NAMED
+        EXPECT_EQ(of<CheckOptions>([&](auto& o) { o.require.encoding = static_cast<Encoding>(number); }),
+                  "require.encoding: is none of its enumerators");
+        EXPECT_EQ(of<CheckOptions>([&](auto& o) { o.require.format = static_cast<Format>(number); }),
+                  "require.format: is none of its enumerators");
+        EXPECT_EQ(of<CheckOptions>([&](auto& o) { o.require.y = static_cast<YAxis>(number); }),
+                  "require.y: is none of its enumerators");
+
+        Texture texture = *pack(chain({{8, 8}}));
+        texture.format = static_cast<Format>(number);
+        EXPECT_EQ(refusal(unpack(texture)), "format: is none of its enumerators");
+        EXPECT_EQ(refusal(decode(texture, 0)), "format: is none of its enumerators");
+        EXPECT_EQ(level_bytes(texture.format, {4, 4}), 0u);
+        EXPECT_EQ(refusal(scale(flat({4, 4}), 2.0f, static_cast<ScaleMode>(number))),
+                  "mode: is none of its enumerators");
+        EXPECT_EQ(refusal(curvature(flat({4, 4}), {static_cast<CurvatureKind>(number)})),
+                  "kind: is none of its enumerators");
+    }
+}
+
+TEST(Usable, PicturesWithoutLevelsAreRefused) {
+    EXPECT_EQ(refusal(encode_picture({})), "the picture has no level");
+    EXPECT_EQ(refusal(split_view({{}, "a"}, {{}, "b"})), "a split view needs two pictures");
+    EXPECT_EQ(slope_range({}).max_x, 0.0f);
 }
 
 TEST(Usable, VerbsAskBeforeTheyWork) {

@@ -34,8 +34,8 @@ struct IntegrateOptions {
     // smaller z than 1/255 besides 0, and no slope above 127 to any use. Above 0, at most 1.
     float least_z = 1e-6f;
     // Frequencies at which the response of the kernel is below this fraction of a derivative's are left out: see
-    // integrate(). Rounding to 8 bits is amplified up to its inverse: 0.1 keeps that out of sight. 0: that of
-    // least_response_of() the kernel.
+    // integrate(). Rounding to 8 bits is amplified up to its inverse: 0.1 keeps that out of sight. From 1e-6 to 1,
+    // or 0: that of least_response_of() the kernel.
     float least_response = 0.0f;
     // The most solutions if one is not enough; they end before if heights change by less than 1e-5 of their range.
     int most_steps = 40;
@@ -92,7 +92,8 @@ struct Integration {
 // prime factors above 5).
 //
 // Errors: bad_option  the map has no texels, or more than kMaxExtent in a direction; as validate(options)
-//         bad_data    z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope
+//         bad_data    z is below 0 in more than one of sixteen texels, as in object space; no texel has a usable slope;
+//                     slopes are so steep that heights do not fit floats
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] TEX_API Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options = {},
@@ -139,7 +140,8 @@ struct Curvature {
 // Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes; so do, in both, texels with a
 // component that is NaN or infinite.
 //
-// Errors: bad_option (the map has no texels, or more than kMaxExtent in a direction), out_of_memory, cancelled.
+// Errors: bad_option (the map has no texels, or more than kMaxExtent in a direction; an option is none of its
+// enumerators), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] TEX_API Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options = {},
                                                   const Execution& execution = {});

@@ -38,7 +38,7 @@
 //   - Every other structure begins with `size`, which the caller sets to the size that it was compiled with. Members
 //     are only added at the end, and 0 in them means what was done before they existed. A library that is older than
 //     the caller accepts a larger structure if what it does not know is 0, and returns TEX_BAD_OPTION otherwise. (The
-//     rule of the newer system calls of Linux: openat2(2), "Extensibility".)
+//     rule of the newer system calls of Linux: openat2(2), "Extensibility".) No structure has more than 4096 bytes.
 //   - The symbols have the version TEX_1.0, those of a later version another one.
 //
 // TEX_..._OPTIONS initialise structures of options:    tex_bake_options options = TEX_BAKE_OPTIONS;
@@ -411,7 +411,7 @@ typedef struct tex_integrate_options {
     float bumpiness_x, bumpiness_y;  // the height of value 1 in texel widths; 1e-20 to 1e20 in magnitude
     int32_t wrap_x, wrap_y;          // tex_wrap
     float least_z;                   // slopes of texels with a smaller z are unknown; above 0, at most 1
-    float least_response;            // 0 to 1; 0: that of the kernel
+    float least_response;            // 1e-6 to 1; 0: that of the kernel
     int32_t most_steps;              // solutions, at least 1
 } tex_integrate_options;
 #define TEX_INTEGRATE_OPTIONS \
@@ -429,7 +429,8 @@ TEX_C_API size_t tex_integrate_size(int32_t width, int32_t height, const tex_int
 // The heights whose normals are nearest to those of the map: the inverse of tex_bake(). `heights` has the extent of the
 // map. report may be null; the caller sets its `size`.
 //
-// Fails with TEX_BAD_DATA: z is below 0 in more than one of sixteen texels, or no texel has a usable slope.
+// Fails with TEX_BAD_DATA: z is below 0 in more than one of sixteen texels, no texel has a usable slope, or slopes are
+// so steep that heights do not fit floats.
 TEX_C_API int32_t tex_integrate(const tex_map* map, const tex_integrate_options* options, const tex_plane* heights,
                                 tex_integrate_report* report, void* scratch, size_t scratch_size);
 

@@ -26,12 +26,14 @@
 
 namespace tex::inline v1 {
 
+inline constexpr std::uint32_t kLargestStructure = 4096;  // more can only be memory that nobody initialised
+
 // Copies a structure of options, as the rules of its ABI say: TEX_OK, TEX_BAD_ARGUMENT or TEX_BAD_OPTION. (All of them
 // have the size of their first version.)
 template <class Options>
 int32_t copy_options(const Options* from, Options& to) {
     static_assert(std::is_trivially_copyable_v<Options>);
-    if (from == nullptr || from->size < sizeof(Options)) return TEX_BAD_ARGUMENT;
+    if (from == nullptr || from->size < sizeof(Options) || from->size > kLargestStructure) return TEX_BAD_ARGUMENT;
     const auto* const bytes = reinterpret_cast<const unsigned char*>(from);
     const bool known =
         std::all_of(bytes + sizeof(Options), bytes + from->size, [](unsigned char byte) { return byte == 0; });
@@ -43,7 +45,7 @@ int32_t copy_options(const Options* from, Options& to) {
 // Whether a report of the caller can be filled.
 template <class Report>
 bool is_report(const Report* report) {
-    return report == nullptr || report->size >= sizeof(Report);
+    return report == nullptr || (report->size >= sizeof(Report) && report->size <= kLargestStructure);
 }
 
 // Fills it; what a newer caller knows besides becomes 0.

@@ -36,6 +36,7 @@ int32_t code_of(ErrorCode code) {
 }
 
 int32_t make_corner_tangents(const tex_mesh& mesh, TangentMethod method, float* out) {
+    if (mesh.index_count / 3 > kMaxTriangles) return TEX_BAD_DATA;
     MeshPart part;
     part.v_axis = static_cast<YAxis>(mesh.v_axis);
     part.positions = copied_attribute<Float3>(mesh.positions, mesh.position_stride, mesh.vertices);

@@ -101,7 +101,7 @@ int32_t integrate_map(const NormalMap& map, const IntegrateOptions& options, con
     report.steps = steps;
     const float larger = std::max(std::abs(options.bumpiness_x), std::abs(options.bumpiness_y));
     const auto highest = settle_heights(*heights, larger, kThisThread);
-    if (!highest) return TEX_OUT_OF_MEMORY;
+    if (!highest) return highest.error().code == ErrorCode::bad_data ? TEX_BAD_DATA : TEX_OUT_OF_MEMORY;
     report.highest = *highest;
     copy_rows(*heights, out);
     return TEX_OK;

@@ -53,6 +53,7 @@ Result<void> check_usable(const MipChain& chain) {
 
 Result<void> check_usable(const Texture& texture) {
     if (texture.levels.empty()) return bad_option("the texture has no level");
+    if (auto known = check_known("format", kFormatNames, texture.format); !known) return known;
     for (std::size_t k = 0; k < texture.levels.size(); ++k) {
         const Level& level = texture.levels[k];
         if (auto usable = check_usable(level.extent, "the texture"); !usable) return usable;

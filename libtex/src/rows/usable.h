@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include <tex/format.h>
@@ -12,6 +15,26 @@ namespace tex::inline v1 {
 
 // The Error for an option out of its range: "gaussian_sigma: must be above 0 and at most 64".
 [[nodiscard]] Error bad_option(std::string_view reason);
+
+// A value of an enumeration that has a row in the table of its names; other numbers can come from bindings.
+template <class E, std::size_t N>
+[[nodiscard]] Result<void> check_known(std::string_view option, const Named<E> (&table)[N], E value) {
+    if (!name_of(table, value).empty()) return {};
+    return bad_option(std::string(option) + ": is none of its enumerators");
+}
+template <class E, std::size_t N>
+[[nodiscard]] Result<void> check_known(std::string_view option, const Named<E> (&table)[N], std::optional<E> value) {
+    return value ? check_known(option, table, *value) : Result<void>();
+}
+
+// The first of these that is an error.
+template <class... Results>
+[[nodiscard]] Result<void> first_error(const Results&... results) {
+    for (const Result<void>* result : {&results...}) {
+        if (!*result) return *result;
+    }
+    return {};
+}
 
 // An extent of at least 1x1 and at most kMaxExtent, of `what`: "the map".
 [[nodiscard]] Result<void> check_usable(Extent extent, std::string_view what);

@@ -165,12 +165,15 @@ bool is_unusable(const Integrator::Count& count, Extent extent) {
 Result<float> settle_heights(Plane<float>& heights, float larger, const Execution& execution) {
     const Extent extent = heights.extent();
     const Bounds bounds = bounds_of(heights);
+    const float highest = (bounds.high - bounds.low) * (1.0f / larger);
+    if (!(std::isfinite(highest) && highest >= 0.0f))  // a height that is NaN makes all of them NaN
+        return Error{ErrorCode::bad_data, {}, "the heights do not fit floats: slopes are too steep"};
     const auto body = [&](int begin, int end) {
         for (int j = begin; j < end; ++j) shift_and_scale(bounds.low, 1.0f / larger, extent.width, heights.row(j));
     };
     const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent.height, strip_rows(extent.width, 0), body); !done) return done.error();
-    return (bounds.high - bounds.low) * (1.0f / larger);
+    return highest;
 }
 
 }  // namespace tex::inline v1

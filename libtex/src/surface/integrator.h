@@ -15,6 +15,7 @@
 namespace tex::inline v1 {
 
 // From heights in texel widths, whose mean is 0, to those of the field, in place. Returns the highest; the lowest is 0.
+// Errors: bad_data (a height is too large for a float), out_of_memory, cancelled.
 [[nodiscard]] Result<float> settle_heights(Plane<float>& heights, float larger, const Execution& execution);
 
 class Integrator {
