@@ -232,6 +232,9 @@ packages)
     quietly 'the packages cannot be configured' cmake -S "$source" --preset debian -B "$scratch/build" "${reuse[@]}" \
         -DCMAKE_CXX_COMPILER="$cxx"
     quietly 'the packages cannot be built' cmake --build "$scratch/build"
+    # The length of this path stays when the installation removes it, and bytes must not depend on the folder.
+    readelf -dW "$scratch/build/bake-normals" | grep -q 'RUNPATH.*\[.ORIGIN' ||
+        fail 'the search path for libraries names the folder of the build'
     quietly 'cpack failed' cpack --config "$scratch/build/CPackConfig.cmake" -B "$scratch"
     root=$scratch/root
     package libtex1 libc6 libpng16-16 libdeflate0 libisal2 libzstd1 libopenexr libtbb12 libhwy \
