@@ -4,7 +4,7 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
-#                                   package abi engines platforms portable windows
+#                                   package abi engines platforms portable windows release
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -15,8 +15,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . .ci/steps.sh
 begin "$PWD/build/nightly" "$@"
 
-# The release, which most steps use.
-release() {
+# The build that most steps use.
+build_release() {
     cmake --preset release -DBUILD_TESTING=ON -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$results/release.configure.log" ||
         { cat "$results/release.configure.log"; return 1; }
     cmake --build --preset release
@@ -211,10 +211,28 @@ windows() {
     samples/packaging/windows.sh && counted windows tests/windows.sh
 }
 
+# Everything that a release consists of, made from two clones in folders with names of different lengths: an hour. The
+# sums are equal, and the signature holds.
+make_release_twice() (
+    set -e
+    unset CMAKE_CXX_COMPILER_LAUNCHER
+    folder=$(mktemp -d)
+    trap 'rm -rf "$folder"' EXIT
+    version=$(sed -n 's/^project(libtex VERSION \([0-9.]*\) .*/\1/p' CMakeLists.txt)
+    minisign -G -W -p "$folder/key.pub" -s "$folder/key" >/dev/null
+    for clone in one another/longer; do
+        mkdir -p "$folder/$clone"
+        git clone -q . "$folder/$clone/libtex"
+        MINISIGN_KEY=$folder/key "$folder/$clone/libtex/samples/packaging/release.sh" "$version" "$folder/$clone/made"
+    done
+    diff "$folder/one/made/SHA256SUMS" "$folder/another/longer/made/SHA256SUMS"
+    samples/packaging/verify-release.sh "$folder/one/made" --key "$folder/key.pub" --clone .
+)
+
 need_packages "${build_packages[@]}" "${test_packages[@]}" "${gate_packages[@]}" "${nightly_packages[@]}"
 if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
 
-release
+build_release
 step long long
 step scalar scalar
 step commands commands
@@ -229,4 +247,5 @@ step engines engines
 step platforms platforms
 step portable portable
 step windows windows
+step release script release make_release_twice
 finish
