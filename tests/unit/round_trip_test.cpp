@@ -155,7 +155,7 @@ TEST(RoundTrip, RepacksEveryRealTextureWithoutFurtherLoss) {
     int repacked = 0;
     for (const char* folder : {"dds", "dds/reference"}) {
         for (const auto& path : files_in(folder, ".dds")) {
-            const auto texture = read_texture(path);
+            const auto texture = read_texture(path.string());
             ASSERT_TRUE(texture) << texture.error().message();
             const auto encoding = encoding_of(*texture);
             if (!encoding) continue;
