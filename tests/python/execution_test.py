@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Threads, progress, cancellation, errors."""
 
+import errno
 import inspect
 import os
 import pickle
@@ -175,6 +176,18 @@ def test_io_errors_name_their_file():
     with pytest.raises(OSError) as caught:
         tex.read_image(os.fsencode("none\udcff.png").decode(errors="surrogateescape"))
     assert caught.value.filename == caught.value.file == "none\udcff.png"
+
+
+def test_io_errors_have_an_errno_if_the_disk_is_full():
+    with pytest.raises(tex.IoError) as caught:
+        tex.write_file("/dev/full", b"text")
+    assert caught.value.errno == errno.ENOSPC and caught.value.strerror == caught.value.reason
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (again.errno, again.strerror, again.filename) == (errno.ENOSPC, caught.value.reason, "/dev/full")
+    with pytest.raises(tex.IoError) as caught:
+        tex.read_image("none.png")
+    assert caught.value.errno is None and caught.value.strerror == caught.value.reason
+    assert "Otherwise None" in tex.IoError.__doc__
 
 
 def test_every_code_has_its_class():
