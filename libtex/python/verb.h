@@ -163,7 +163,8 @@ public:
     explicit Module(py::module_& module) : module_(module) {}
 
     template <class... Options, class Body>
-    void verb(const char* name, std::vector<Parameter> positional, const char* returns, const char* notes, Body body) {
+    void verb(const char* name, std::vector<Parameter> positional, const char* returns, const std::string& notes,
+              Body body) {
         Lister lister;
         [[maybe_unused]] const auto list = [&lister](auto options) { each_field(options, lister); };
         (list(Options{}), ...);
@@ -199,7 +200,7 @@ private:
 
     // Adds the function's stub. Returns its docstring, which begins with the signature for inspect.signature().
     std::string describe(const char* name, const std::vector<Parameter>& positional,
-                         const std::vector<Parameter>& keywords, const char* returns, const char* notes);
+                         const std::vector<Parameter>& keywords, const char* returns, const std::string& notes);
 
     py::module_& module_;
     std::vector<std::pair<std::string, std::string>> overloads_;
