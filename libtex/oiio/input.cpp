@@ -93,6 +93,12 @@ bool is_constant(const Plane<float>& plane) {
     return true;
 }
 
+// oiiotool 2.4 asks supports("procedural") before it opens a name without a file, and crashes if that fails then.
+bool can_be_opened(const std::string& name) {
+    ImageSpec spec;
+    return Input().open(name, spec);
+}
+
 // Floats of normals become colours. Programs expect 0 to 1, and clamp what lies outside in most file types.
 void to_colours(std::vector<std::byte>& bytes) {
     for (std::size_t at = 0; at + sizeof(float) <= bytes.size(); at += sizeof(float)) {
@@ -113,8 +119,9 @@ int Input::supports(OIIO::string_view feature) const { return feature == "proced
 bool Input::valid_file(const std::string& name) const {
     try {
         const std::string path = file_of(name);
-        named_ = path != name;
-        return check_magic(path).has_value();
+        const bool valid = check_magic(path).has_value();
+        named_ = path != name && valid && can_be_opened(name);
+        return valid;
     } catch (...) {  // no memory
         return false;
     }

@@ -75,15 +75,18 @@ py::array floats_of(const py::array& array, std::string_view name, bool is_map) 
                                          name, std::string(py::str(array.dtype()))));
     }
     if (!integers && !(kind == 'f' && bytes <= 8)) {
-        throw py::type_error(fmt::format("{}: cannot use values of the type {}; convert them to float32{}", name,
-                                         std::string(py::str(array.dtype())),
-                                         is_map ? "" : ", or to uint8 or uint16, which are divided by 255 or 65535"));
+        throw py::type_error(
+            fmt::format("{}: cannot use values of the type {}; convert them to float32{}", name,
+                        std::string(py::str(array.dtype())),
+                        is_map ? "" : ", or to an integer type of 8 or 16 bits, whose largest value is 1"));
     }
     const py::dtype float32("float32");
     py::object floats = call_method(array, "astype", float32);
     if (integers) {
         const auto bits = static_cast<int>(8 * bytes) - (kind == 'i' ? 1 : 0);
         floats = call_method(floats, "__truediv__", float32.attr("type")((1 << bits) - 1));
+        // The lowest code is -1, too, as in files.
+        if (kind == 'i') floats = call_method(floats, "clip", float32.attr("type")(-1));
     }
     return floats;
 }
@@ -267,7 +270,8 @@ void add_others(py::handle from, std::string_view name, Sharing sharing, NormalM
 
 }  // namespace
 
-NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
+NormalMap map_from(py::handle from, std::string_view name, Sharing sharing, Normals normals) {
+    const bool any = normals == Normals::any;
     if (std::optional<MipChain> chain = chain_of_source(from, true)) return std::move(chain->levels.front());
     const py::array array = array_from(from, name, true);
     const Extent extent = extent_of(array, name, 3, "(height, width, 3)");
@@ -291,7 +295,7 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing) {
             } else {
                 copy_to(plane, texels);
             }
-            sound = sound && is_finite(plane.view());
+            sound = sound && (any || is_finite(plane.view()));
         }
         return sound;
     });

@@ -11,8 +11,8 @@
 //   everything else: other strides, byte orders and types                            copied and converted
 //
 // Floats of 16 and 64 bits become floats of 32 bits. Integers of 8 and 16 bits become what read_image() makes of them:
-// unsigned ones of n bits are divided by 2^n - 1, signed ones by 2^(n-1) - 1; maps must be floats. Other types raise
-// TypeError, other shapes and values that are not finite ValueError.
+// unsigned ones of n bits are divided by 2^n - 1, signed ones by 2^(n-1) - 1, and their lowest value is -1 too; maps
+// must be floats. Other types raise TypeError, other shapes and values that are not finite ValueError.
 
 #pragma once
 
@@ -57,7 +57,9 @@ inline constexpr const char* kArrayMethod = "(self, dtype: Any = None, copy: boo
 
 // A map of an array (height, width, 3), or of what chain_of_source() takes. A tex.NormalMap has other data beside it.
 enum class Sharing { reads, writes };  // a verb that writes into the map gets a copy
-[[nodiscard]] NormalMap map_from(py::handle from, std::string_view name, Sharing sharing = Sharing::reads);
+enum class Normals { finite, any };    // whether NaN and infinite components raise ValueError
+[[nodiscard]] NormalMap map_from(py::handle from, std::string_view name, Sharing sharing = Sharing::reads,
+                                 Normals normals = Normals::finite);
 
 // A chain of an array, which becomes the only level, or of a sequence of arrays.
 [[nodiscard]] MipChain chain_from(py::handle from, std::string_view name, Sharing sharing = Sharing::reads);

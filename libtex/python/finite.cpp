@@ -58,7 +58,9 @@ bool looks_like_colours(const NormalMap& map) {
         const float *const x = map.x.row(j), *const y = map.y.row(j), *const z = map.z.row(j);
         for (int i = 0; i < extent.width; ++i) {
             if (x[i] < 0.0f || y[i] < 0.0f) return false;  // most maps end here, in their first rows
-            as_components += static_cast<double>(distance(x[i], y[i], z[i]));
+            const float as_component = distance(x[i], y[i], z[i]);
+            if (!std::isfinite(as_component)) continue;
+            as_components += static_cast<double>(as_component);
             as_colours += static_cast<double>(distance(2.0f * x[i] - 1.0f, 2.0f * y[i] - 1.0f, 2.0f * z[i] - 1.0f));
         }
     }

@@ -11,6 +11,7 @@ namespace tex::python {
 [[nodiscard]] bool is_finite(PlaneView<const float> plane);
 
 // Whether no x or y is below 0, and the values are of about unit length as colours, (n + 1) / 2, but not as components.
+// Texels that are not finite do not count.
 [[nodiscard]] bool looks_like_colours(const NormalMap& map);
 
 }  // namespace tex::python

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Facts: formats, encodings, levels, versions.
 
+#include <limits>
+
 #include <pybind11/stl.h>
 
 #include "modules.h"
@@ -60,8 +62,8 @@ void add_formats(Module& module) {
                   });
     module.verb<>("level_extent", {{"base", "tuple[int, int]"}, {"level", "int"}}, "tuple[int, int]", "",
                   [](Call& call) -> py::object {
-                      const int level = Convert<int>::from(call["level"], "level");
-                      need(level >= 0, "level", "must be 0 or more");
+                      constexpr int kMost = std::numeric_limits<int>::max();
+                      const auto level = static_cast<int>(integer_from(call["level"], "level", 0, kMost));
                       return tuple_of(level_extent(extent_from(call, "base"), level));
                   });
     module.verb<>("level_count", {{"base", "tuple[int, int]"}}, "int", "",

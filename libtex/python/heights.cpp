@@ -78,8 +78,8 @@ py::object debanded(Call& call, Relief& relief, Running& running) {
 void add_heights(Module& module) {
     module.verb<HeightOptions, Running>(
         "height_field", {{"image", kPicture}, {"report", "dict[str, Any] | None", "None"}}, "HeightField",
-        "The heights of a picture, or of an array (height, width) or (height, width, channels), of which HeightChannel "
-        "chooses one. `report` is a dict that gets the fields of HeightReport.",
+        "The heights of a picture, or of an array (height, width) or (height, width, channels), of which "
+        "`channel` chooses one. `report` is a dict that gets the fields of HeightReport.",
         [](Call& call, HeightOptions& options, Running& running) -> py::object {
             check(options);
             const Picture image(call["image"], "image");

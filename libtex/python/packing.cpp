@@ -32,6 +32,19 @@ void each_field(BlockKeywords& o, F& f) {
     f("metric", o.metric);
 }
 
+// Raises ValueError if an array has data beside the normals for which the encoding has no room. Files that hold such
+// data can be packed, as the commands do.
+void need_room(const MipChain& chain, py::handle from, const char* name, Encoding encoding) {
+    if (is_path(from) || py::isinstance<Image>(from) || py::isinstance<Texture>(from)) return;
+    for (const NormalMap& level : chain.levels) {
+        for (const OtherName& other : kOtherNames) {
+            if ((level.*other.plane).empty() || can_hold(encoding).*other.has) continue;
+            throw py::value_error(fmt::format("{}: {} has no room for {}; NormalMap(n, {}=None) leaves it out", name,
+                                              name_of(kEncodingNames, encoding), other.name, other.name));
+        }
+    }
+}
+
 // pack() makes the same bytes as encode_blocks(), on all threads, and can be stopped.
 py::object encoded(Call& call, PackOptions& options, Running& running) {
     if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
@@ -39,6 +52,7 @@ py::object encoded(Call& call, PackOptions& options, Running& running) {
          "must be one of 'dxt5nm', 'bc5', 'bc5-snorm', 'eac-rg11', 'eac-rg11-snorm'");
     MipChain chain;
     chain.levels.push_back(map_from(call["n"], "n"));
+    need_room(chain, call["n"], "n", options.encoding);
     const Texture texture = running.run([&](const Execution& e) { return pack(chain, options, e); });
     return bytes_of(texture.levels.front().bytes);
 }
@@ -59,10 +73,12 @@ void add_packing(Module& module) {
     module.verb<PackKeywords, Running>(
         "pack", {{"chain", kChainSource}, {"encoding", "str", "'dxt5nm'"}}, "Texture",
         "`chain` is a list of levels, as build_mip_chain() returns it, or one array (height, width, 3). A path, an "
-        "Image or a Texture stands for its normals.",
+        "Image or a Texture stands for its normals. A NormalMap with data for which the encoding has no room raises "
+        "ValueError; of files, such data are left out.",
         [](Call& call, PackKeywords& options, Running& running) -> py::object {
             if (call.has("encoding")) options.encoding = Convert<Encoding>::from(call["encoding"], "encoding");
             const MipChain chain = chain_from(call["chain"], "chain");
+            need_room(chain, call["chain"], "chain", options.encoding);
             return object_of(running.run([&](const Execution& e) { return pack(chain, options, e); }));
         });
     module.verb<BlockKeywords, Running>(

@@ -10,9 +10,13 @@
 namespace tex::python {
 namespace {
 
+constexpr const char* kInvalid =
+    " An array may have texels that are NaN, as unpack(..., keep_invalid=True) returns them; those of a path, an Image "
+    "or a Texture are flat, as unpack() makes them.";
+
 py::object integrated(Call& call, BakeOptions& bake, IntegrateOptions& options, Running& running) {
     options.bake = bake;
-    const NormalMap map = map_from(call["n"], "n");
+    const NormalMap map = map_from(call["n"], "n", Sharing::reads, Normals::any);
     Integration found = running.run([&](const Execution& e) { return integrate(map, options, e); });
     py::dict result;
     result["height"] = array_of(std::move(found.field.height));
@@ -25,7 +29,7 @@ py::object integrated(Call& call, BakeOptions& bake, IntegrateOptions& options, 
 }
 
 py::object bent(Call& call, CurvatureOptions& options, Running& running) {
-    const NormalMap map = map_from(call["n"], "n");
+    const NormalMap map = map_from(call["n"], "n", Sharing::reads, Normals::any);
     Curvature found = running.run([&](const Execution& e) { return curvature(map, options, e); });
     py::dict result;
     result["values"] = array_of(std::move(found.values));
@@ -40,12 +44,14 @@ py::object bent(Call& call, CurvatureOptions& options, Running& running) {
 void add_surfaces(Module& module) {
     module.verb<BakeOptions, IntegrateOptions, Running>(
         "integrate", {{"n", kMapSource}}, "dict[str, Any]",
-        "A dict of the fields of Integration: 'height' and 'degrees' are arrays (height, width), and 'curl' has the "
-        "fields of AngularError. bake(result['height'], bumpiness=..., wrap=...) gives the map back.",
+        std::string("A dict of the fields of Integration: 'height' and 'degrees' are arrays (height, width), and "
+                    "'curl' has the "
+                    "fields of AngularError. bake(result['height'], bumpiness=..., wrap=...) gives the map back.") +
+            kInvalid,
         integrated);
-    module.verb<CurvatureOptions, Running>("curvature", {{"n", kMapSource}}, "dict[str, Any]",
-                                           "A dict of the fields of Curvature: 'values' is an array (height, width).",
-                                           bent);
+    module.verb<CurvatureOptions, Running>(
+        "curvature", {{"n", kMapSource}}, "dict[str, Any]",
+        std::string("A dict of the fields of Curvature: 'values' is an array (height, width).") + kInvalid, bent);
 }
 
 }  // namespace tex::python

@@ -115,7 +115,7 @@ void Module::stub(const std::string& text) {
 }
 
 std::string Module::describe(const char* name, const std::vector<Parameter>& positional,
-                             const std::vector<Parameter>& keywords, const char* returns, const char* notes) {
+                             const std::vector<Parameter>& keywords, const char* returns, const std::string& notes) {
     if (overloads_.empty())
         stubs() += fmt::format("def {}{} -> {}: ...\n", name, signature_of(positional, keywords, true), returns);
     for (const auto& [given, returned] : overloads_) {
@@ -125,7 +125,7 @@ std::string Module::describe(const char* name, const std::vector<Parameter>& pos
     }
     std::string doc = fmt::format("{}{}\n--\n\n{}", name, signature_of(positional, keywords, false), wrapped(notes));
     if (const HeaderComment* const comment = header_comment(name))
-        doc += fmt::format("{}From tex/{}:\n\n{}", *notes != '\0' ? "\n\n" : "", comment->header, comment->text);
+        doc += fmt::format("{}From tex/{}:\n\n{}", !notes.empty() ? "\n\n" : "", comment->header, comment->text);
     return doc;
 }
 

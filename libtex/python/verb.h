@@ -10,6 +10,7 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -162,7 +163,8 @@ public:
     explicit Module(py::module_& module) : module_(module) {}
 
     template <class... Options, class Body>
-    void verb(const char* name, std::vector<Parameter> positional, const char* returns, const char* notes, Body body) {
+    void verb(const char* name, std::vector<Parameter> positional, const char* returns, const std::string& notes,
+              Body body) {
         Lister lister;
         [[maybe_unused]] const auto list = [&lister](auto options) { each_field(options, lister); };
         (list(Options{}), ...);
@@ -178,7 +180,7 @@ public:
             reader.finish(std::string(name) + "()");
             return std::apply([&](auto&... each) -> py::object { return body(call, each...); }, options);
         };
-        module_.def(name, invoke, doc.c_str());
+        define(name, invoke, doc);
     }
 
     // The return type of the next verb depends on its first argument: pairs of types, as the stubs show them.
@@ -192,9 +194,13 @@ public:
     [[nodiscard]] py::module_& module() { return module_; }
 
 private:
+    // Adds a builtin function. Unlike those of pybind11, it belongs to the module, so pickle knows it by its name.
+    using Function = std::function<py::object(const py::args&, const py::kwargs&)>;
+    void define(const char* name, Function function, const std::string& doc);
+
     // Adds the function's stub. Returns its docstring, which begins with the signature for inspect.signature().
     std::string describe(const char* name, const std::vector<Parameter>& positional,
-                         const std::vector<Parameter>& keywords, const char* returns, const char* notes);
+                         const std::vector<Parameter>& keywords, const char* returns, const std::string& notes);
 
     py::module_& module_;
     std::vector<std::pair<std::string, std::string>> overloads_;

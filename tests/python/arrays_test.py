@@ -101,6 +101,10 @@ def test_integers_are_what_read_image_makes_of_them(tmp_path):
     assert bytes_of(tex.bake(words.astype(">u2"))) == bytes_of(tex.bake(words.astype(np.float32) / np.float32(65535)))
     signed = RANDOM.integers(-127, 128, (32, 32), dtype=np.int8)
     assert bytes_of(tex.bake(signed)) == bytes_of(tex.bake(signed.astype(np.float32) / np.float32(127)))
+    for kind, least in ((np.int8, -128), (np.int16, -32768)):  # the lowest code is -1, too
+        lowest = np.array([[least, least + 1, 0, -least - 1]], kind)
+        assert np.asarray(tex.HeightField(lowest)).tolist() == [[-1, -1, 0, 1]]
+        assert np.asarray(tex.Image(lowest)).tolist() == [[-1, -1, 0, 1]]
     halves = floats.astype(np.float16)
     assert bytes_of(tex.bake(halves)) == bytes_of(tex.bake(halves.astype(np.float32)))
 
@@ -140,6 +144,24 @@ def test_values_must_be_finite(value):
     for call in (tex.pack, tex.build_mip_chain, tex.encode_blocks, tex.slope_range, lambda n: tex.compare(n, n)):
         with pytest.raises(ValueError, match="infinite or NaN"):
             call(normals)
+
+
+def test_what_surfaces_have_may_lack_normals():
+    stored = np.array(np.broadcast_to(np.float32([0, 0, 1]), (32, 32, 3)))
+    stored[2, 3], stored[5, 6, 0] = np.nan, np.inf
+    n = tex.unpack(tex.Image(stored, ["X", "Y", "Z"]), keep_invalid=True, range="signed")
+    assert np.isnan(n).all(2).sum() == 2
+    for same in (n, np.array(n), stored):
+        found = tex.integrate(same)
+        assert found["unused_texels"] == 2 and np.allclose(found["height"], 0)
+        assert not np.isnan(tex.curvature(same)["values"]).any()
+    for refuses in (tex.build_mip_chain, tex.pack, tex.slope_range):
+        with pytest.raises(ValueError, match="some values are infinite or NaN"):
+            refuses(n)
+    colours = (stored + 1) / 2
+    for verb in (tex.integrate, tex.curvature):
+        with pytest.raises(ValueError, match="look like colours"):
+            verb(colours)
 
 
 @pytest.mark.parametrize("row", [0, 1499, 2000, 2999])

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Threads, progress, cancellation, errors."""
 
+import errno
+import inspect
 import os
 import pickle
 import signal
@@ -176,6 +178,18 @@ def test_io_errors_name_their_file():
     assert caught.value.filename == caught.value.file == "none\udcff.png"
 
 
+def test_io_errors_have_an_errno_if_the_disk_is_full():
+    with pytest.raises(tex.IoError) as caught:
+        tex.write_file("/dev/full", b"text")
+    assert caught.value.errno == errno.ENOSPC and caught.value.strerror == caught.value.reason
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (again.errno, again.strerror, again.filename) == (errno.ENOSPC, caught.value.reason, "/dev/full")
+    with pytest.raises(tex.IoError) as caught:
+        tex.read_image("none.png")
+    assert caught.value.errno is None and caught.value.strerror == caught.value.reason
+    assert "Otherwise None" in tex.IoError.__doc__
+
+
 def test_every_code_has_its_class():
     codes = {each.code for each in tex.Error.__subclasses__()}
     assert codes == {"io", "bad-data", "unsupported", "bad-option", "out-of-memory", "cancelled"}
@@ -188,7 +202,7 @@ def work(seed):
 if __name__ == "__main__":
     work(0)
     with multiprocessing.get_context("spawn").Pool(2) as pool:
-        print(len(pool.map(work, range(4))))
+        print(len(pool.map(work, range(4))), pool.map(tex.can_compress, ["ktx2", "dds"]))
 """
 
 
@@ -196,4 +210,13 @@ def test_processes_can_be_spawned(tmp_path):
     script = tmp_path / "children.py"
     script.write_text(CHILDREN, encoding="utf-8")
     done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=120, check=False)
-    assert done.stdout == "4\n", done.stderr
+    assert done.stdout == "4 [True, False]\n", done.stderr
+
+
+def test_functions_are_pickled_by_their_names():
+    functions = [getattr(tex, name) for name in tex.__all__ if inspect.isroutine(getattr(tex, name))]
+    assert len(functions) > 80
+    for function in functions:
+        assert pickle.loads(pickle.dumps(function)) is function
+    texture = tex.pack(np.float32([[[0, 0, 1]]]))
+    assert repr(pickle.loads(pickle.dumps(texture.__repr__))()) == repr(texture.__repr__())

@@ -145,6 +145,14 @@ def test_results_outlive_what_they_share(width):
     assert (again[0].alpha == 0.25).all() and (again[1].alpha == 0.25).all()
 
 
+def test_what_files_hold_beside_normals_may_be_left_out(picture):
+    n = tex.read_normals(picture)[0][0]
+    assert n.alpha is not None
+    alone = tex.encode_file(tex.pack(tex.NormalMap(n, alpha=None), "bc5"), "dds")
+    for source in (picture, tex.read_image(picture), tex.read_texture(picture)):
+        assert bytes(tex.pack(source, "bc5").levels[0]) == alone[-len(tex.pack(source, "bc5").levels[0]):]
+
+
 def test_mistakes_are_named():
     for call, error, text in (
         (lambda: tex.NormalMap(NORMALS, aplha=CODES), TypeError, "unexpected argument 'aplha'"),
@@ -152,6 +160,10 @@ def test_mistakes_are_named():
         (lambda: tex.NormalMap(NORMALS, alpha=CODES.T), ValueError, "alpha: expected an array of shape (24, 40)"),
         (lambda: tex.pack(tex.NormalMap(NORMALS, alpha=np.full(CODES.shape, np.nan))), ValueError, "chain.alpha: some values"),
         (lambda: tex.pack(tex.NormalMap(NORMALS, blue=CODES, length=CODES), "rgba8"), tex.BadOptionError, "blue and length"),
+        (lambda: tex.pack(tex.NormalMap(NORMALS, alpha=CODES), "bc5"), ValueError,
+         "chain: bc5 has no room for alpha; NormalMap(n, alpha=None) leaves it out"),
+        (lambda: tex.pack([tex.NormalMap(NORMALS, blue=CODES)], "rg8"), ValueError, "rg8 has no room for blue"),
+        (lambda: tex.encode_blocks(tex.NormalMap(NORMALS, length=CODES), "bc5"), ValueError, "n: bc5 has no room for length"),
         (lambda: tex.unpack(colours(CODES), others="alpha"), TypeError, "others: expected a sequence"),
         (lambda: tex.unpack(colours(CODES), others=["aplha"]), ValueError, "must be one of 'blue', 'alpha', 'length'"),
         (lambda: tex.pack_file("a", "b.png", others={"aplha": 1}), ValueError, "others: 'aplha' must be one of"),

@@ -15,7 +15,7 @@ from conftest import SOURCE
 
 HEADERS = SOURCE / "libtex/include/tex"
 sys.path.insert(0, str(SOURCE / "libtex/python"))
-from docstrings import DECLARATION, comments  # noqa: E402
+from docstrings import DECLARATION, SENTENCES, comments, sentence_pattern  # noqa: E402
 
 NOT_BOUND = {
     "add_requirement": "the argument `require` of check()",
@@ -231,6 +231,35 @@ def test_docstrings_speak_python(name):
     assert not re.search(r"::|\bnull|nullopt|\(asserted\)|\boptions\.\w|\.size\(\)|bad_|out_of_memory", doc)
 
 
+# Names that docstrings may use although the module has none of them.
+OUTSIDE = {"BasisLZ", "FourCC", "NaN", "NormalMaps", "OpenColorIO", "OpenGL", "RxBG", "UnpackScaleNormal", "ValueError",
+           "ViewLayer", "VkFormat", "VkFormats"}
+
+
+def names_of(text):
+    """What looks like a name: calls, constants, types."""
+    return set(re.findall(r"\b([a-z_]\w*)\(\)|\b(k[A-Z]\w*)|\b((?:[A-Z][a-z]+){2,}|[A-Z]\w*[a-z][A-Z]\w*)\b", text))
+
+
+@pytest.mark.parametrize("name", verbs())
+def test_docstrings_name_what_the_module_has(name):
+    doc = " ".join(inspect.getdoc(getattr(tex, name)).split())
+    explained = set(re.findall(r"fields of (\w+)", doc)) & set(members())
+    known = set(tex.__all__) | OUTSIDE | explained | set(inspect.signature(getattr(tex, name)).parameters)
+    assert {next(filter(None, found)) for found in names_of(doc)} <= known
+
+
+def test_sentences_that_python_replaces_are_still_in_the_headers():
+    texts = {}
+    for header in cplusplus_headers():
+        for function, text in comments(header):
+            texts[function] = texts.get(function, "") + text
+    for function, words, instead in SENTENCES:
+        assert not re.search(sentence_pattern(words), texts[function]), words
+        assert " ".join(instead.split()) in " ".join(texts[function].split()), (function, instead)
+        assert " ".join(instead.split()) in " ".join(inspect.getdoc(getattr(tex, function)).split())
+
+
 FLAT = np.float32([[[0, 0, 1]]])
 
 
@@ -273,6 +302,8 @@ def test_arguments_are_checked():
         (lambda: tex.encode_blocks(FLAT, "rgb8"), "encoding: must be one of"),
         (lambda: tex.blend(FLAT, [{}]), "layers[0]: needs 'detail'"),
         (lambda: tex.encode_picture(tex.pack(FLAT)), "picture: must be a picture"),
+        (lambda: tex.level_extent((4, 4), 1 << 31), "level: 2147483648 must be from 0 to 2147483647"),
+        (lambda: tex.level_extent((4, 4), -1), "level: -1 must be from 0 to 2147483647"),
         (lambda: tex.read_image("a\0b"), "embedded null byte"),
         (lambda: tex.read_image("a", max_texels=-5), "max_texels: must be 1 or more"),
         (lambda: tex.bake_file("a", "b.dds", read={"max_texels": 0}), "max_texels: must be 1 or more"),

@@ -41,9 +41,9 @@ struct Comparison {
 [[nodiscard]] TEX_API Result<Comparison> compare(const NormalMap& a, const NormalMap& b,
                                                  const Execution& execution = {});
 
-// The same of the texels that the triangles of a mesh cover in the set of UVs `uv_set`, as mesh.h says which these
-// are. What is between the charts of a map is never seen, and two bakers fill it differently. The other texels have an
-// angle of 0 in Comparison::degrees and do not count in Comparison::error.
+// With a mesh part, only texels covered by its triangles in UV set `uv_set` are compared (mesh.h defines coverage).
+// What is between the charts of a map is never seen, and two bakers fill it differently. The other texels have an angle
+// of 0 in Comparison::degrees and do not count in Comparison::error.
 //
 // Errors: also bad_data (check_part(part) fails), bad_option (there is no such set of UVs; no triangle covers a texel),
 // unsupported (UVs, as in mesh.h).

@@ -98,8 +98,8 @@ struct HeightOptions {
     HeightChannel channel = HeightChannel::automatic;
     std::string channel_name;  // the whole name of a channel, such as "height.Y", instead of `channel`
     // Texels of exactly this value (after rounding to float) are invalid. It is the number that the file stores, before
-    // Image::scale and Image::offset; where integers are read as fractions of their range, the fraction will do too.
-    // None: Image::no_data, if the file names it. NaN: no value is.
+    // Image::scale and Image::offset; where integers are read as fractions of their range, the fraction will do too. If
+    // unset, Image::no_data applies (if the file names one). Set it to NaN to treat no finite value as missing.
     std::optional<float> no_data;
     bool fill_invalid = false;    // invalid texels take the value of the nearest valid one
     bool invert = false;          // h becomes 1 - h, for maps in which white is low
@@ -157,8 +157,8 @@ struct DebandedField : HeightField {
     DebandReport report;
 };
 
-// Replaces heights that were rounded to steps (those of 8 bits, for example) by smooth ones that round to the same
-// steps. Slopes are then no longer those of terraces. HeightOptions::deband does it while a picture is read.
+// Replaces heights that were rounded to steps (8 bits, for example) by smooth ones that round to the same steps. Slopes
+// are then no longer terraces. HeightOptions::deband of height_field() does this while a picture is read.
 //
 // The steps. Heights lie on steps if all are c + k step for integers k, within 0.6 / 65535 or a quarter of a millionth
 // of the largest magnitude, whichever is larger (but at most a tenth of a step). The step is found from the heights
@@ -207,10 +207,10 @@ struct ColorOptions {
     std::string config;
 };
 
-// Converts the planes R, G and B of `image` (in a grey picture its one plane, as R = G = B) from options.space to the
-// configuration's scene_linear role. Alpha and other planes are unchanged. With a configuration, OpenColorIO
-// computes the result, which may differ in the last bits between processors; the built-in curve (IEC 61966-2-1:1999)
-// gives the same bytes everywhere.
+// Converts the planes R, G and B of `image` (in a grey picture its one plane, as R = G = B) from the colour space
+// `options.space` to the configuration's scene_linear role. Alpha and other planes are unchanged. With a configuration,
+// OpenColorIO computes the result, which may differ in the last bits between processors; the built-in curve (IEC
+// 61966-2-1:1999) gives the same bytes everywhere.
 //
 // Errors: bad_option  no such colour space (the reason lists some that exist); the configuration has no
 //                     scene_linear role
@@ -220,8 +220,8 @@ struct ColorOptions {
 [[nodiscard]] TEX_API Result<Image> to_linear(Image image, const ColorOptions& options);
 
 // The files on which to_linear() depends: the configuration, if it is a file, and the tables (LUTs) that it uses for
-// options.space. Empty without a configuration. OpenColorIO keeps tables in memory; after this call, to_linear() reads
-// them again. Errors: those of to_linear() that concern the configuration.
+// the colour space `options.space`. Empty without a configuration. OpenColorIO keeps tables in memory; after this call,
+// to_linear() reads them again. Errors: those of to_linear() that concern the configuration.
 [[nodiscard]] TEX_API Result<std::vector<std::string>> color_files(const ColorOptions& options);
 
 // The version of OpenColorIO: "2.1.2"; empty in a build without it.

@@ -153,8 +153,8 @@ struct PackedTexture : Texture {
 //
 // BC4's layout is two endpoints of 8 bits, then 16 indices of 3 bits, texel 0 in the lowest bits, little-endian. BC3's
 // colours are two of 5, 6 and 5 bits, red highest, then 16 indices of 2 bits (Direct3D 11.3 Functional Specification,
-// 19.5). Bytes and errors are the same as those of pack()
-// without optimisation: PackOptions::rdo, which needs many rows of blocks at once, is ignored.
+// 19.5). The bytes match those of pack() without optimisation; PackOptions::rdo is ignored, because it needs many rows
+// of blocks at once.
 //
 // Precondition: components are finite. Errors: bad_option (x and y have not the same extent, at least 1x1; the encoding
 // is not one of the five; pitch is less than 16 bytes for each block of a row). Unless it fails, it allocates no
@@ -215,10 +215,10 @@ struct UnpackOptions {
 // The normals of every level of a texture. unorm values become n = 2 c - 1; y is negated if it points down in the
 // texture. If the swizzle holds z, vectors are normalised (shorter than 1e-6: (0, 0, 1); z below 0: as stored). If it
 // holds only x and y, z = reconstruct_z(x, y); if x^2 + y^2 is above 1, x and y are divided by their length, so that
-// the vector has unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1), or
-// NaN with UnpackOptions::keep_invalid. 32-bit
-// floats whose vector already has unit length (x^2 + y^2 + z^2 within 2^-20 of 1) are unchanged, so that several
-// commands in a row give the same bytes as one.
+// the vector has unit length. A vector that is not finite, or whose squared length is not, becomes (0, 0, 1), or NaN
+// with UnpackOptions::keep_invalid (integrate() and curvature() take such maps). 32-bit floats whose vector already has
+// unit length (x^2 + y^2 + z^2 within 2^-20 of 1) are unchanged, so that several commands in a row give the same bytes
+// as one.
 //
 // Floats in ValueRange::automatic are read as Texture::normal_encoding states ("signed" or "unsigned"). If it is empty,
 // the base level decides for all levels. They are signed if a value of x, y or z is below 0, or if that reading is

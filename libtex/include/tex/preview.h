@@ -54,8 +54,8 @@ namespace tex::inline v1 {
 //                  the mesh without the map                                           0 to a rounded 99th percentile
 //
 // Values from 0 upwards are shown in viridis; values of both signs are shown in blue, white and red-brown. Both order
-// colours by lightness or by blue against orange, which people with any common colour vision deficiency can read. A
-// legend is below the picture. It has 240 steps (grey has all codes); values beyond its ends take the colour of the
+// colours by lightness or by blue against orange, which people with any common colour vision deficiency can read. The
+// legend below the picture shows 240 colours; grey scales show all 256. Values beyond its ends take the colour of the
 // end, and NaN is magenta.
 enum class Show {
     lit,

@@ -283,8 +283,9 @@ typedef struct tex_mip_options {
 TEX_C_API size_t tex_mip_size(int32_t width, int32_t height, const tex_mip_options* options);
 
 // Averages of rows [first, end) of the level below `from`, into these rows of `to`, whose extent is max(1, width / 2)
-// by max(1, height / 2). `level` is the level of `from`: 0 if it holds normals, and greater if it holds what this
-// function has made: averages, from which the next level is made before tex_mip_finish() makes them normals. A chain is
+// by max(1, height / 2). `level` is the number of the level in `from`. Level 0 holds normals; higher levels hold the
+// averages written by this function. Make level k + 1 from those averages before tex_mip_finish() turns level k into
+// normals. A chain is
 //
 //     for (level = 0; level + 1 < count; ++level) {
 //         tex_mip_level(&maps[level], level, &options, 0, maps[level + 1].height, &maps[level + 1], scratch, size);

@@ -22,13 +22,24 @@ class Error(Exception):
 
 
 class IoError(Error, OSError):
-    """A file cannot be opened, read, written or renamed; the disk is full. Also an OSError."""
+    """A file cannot be opened, read, written or renamed; the disk is full. Also an OSError.
+
+    errno     errno.ENOSPC if the disk or the quota is full. Otherwise None: libtex does not tell the other failures
+              apart, so there is no FileNotFoundError and no PermissionError
+    strerror  the reason
+    filename  the file; None if no file is involved
+    """
 
     code = "io"
 
-    def __init__(self, file, reason):
+    def __init__(self, file, reason, errno=None):
         super().__init__(file, reason)
+        self.errno = errno
+        self.strerror = reason
         self.filename = file or None
+
+    def __reduce__(self):
+        return type(self), (self.file, self.reason, self.errno)
 
     def __str__(self):
         return self.args[0]
@@ -67,6 +78,6 @@ class CancelledError(Error):
 _CLASSES = {each.code: each for each in Error.__subclasses__()}
 
 
-def error_of(code, file, reason):
-    """The exception of this code."""
-    return _CLASSES[code](file, reason)
+def error_of(code, file, reason, errno=None):
+    """The exception of this code. `errno`: only of IoError."""
+    return _CLASSES[code](file, reason) if errno is None else _CLASSES[code](file, reason, errno)

@@ -12,8 +12,9 @@ class NormalMap(np.ndarray):
     """An array (height, width, 3) of normals, with other data beside them.
 
     `blue`, `alpha` and `length` are arrays (height, width) of numbers from 0 to 1, or None: heights, occlusion,
-    roughness or a mask, as NormalMap of tex/types.h describes them. Where verbs take a map, they take this one,
-    too, and what they make of it has what is left of the data. Maps without other data are plain arrays.
+    roughness or a mask, as NormalMap of tex/types.h describes them. Every verb that takes a map also
+    takes a NormalMap; its result carries whatever extra data the verb preserves. Maps without other data are plain
+    arrays.
 
         n = tex.NormalMap(normals, alpha=heights)
         tex.pack(tex.build_mip_chain(n), "rgba8")
