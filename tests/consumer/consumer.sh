@@ -244,7 +244,8 @@ packages)
     package libtex-tools 'libtex1 (= ' libtiff6 libjpeg62-turbo libassimp libdraco libseccomp2
     case $depends in *openimageio*) fail "the commands need OpenImageIO: $depends" ;; esac
     package libtex-reader-oiio libopenimageio libseccomp2
-    package python3-libtex 'libtex1 (= ' 'python3 (>= 3.11)' python3-numpy
+    python=$(/usr/bin/python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    package python3-libtex 'libtex1 (= ' "python3 (>= $python)" python3-numpy
     package libtex-oiio 'libtex1 (= ' libopenimageio
     check_files "$root/usr" "$debian_files"
     LD_LIBRARY_PATH=$(dirname "$(find "$root" -name libtex.so.1)")
