@@ -2,8 +2,8 @@
 // Builtin functions of the module itself.
 //
 // The functions of pybind11 have a capsule as __self__, and pickle fails on it. Those made here have the module, as
-// functions written in C do, so that pickle stores their name. Python passes a function nothing but its __self__:
-// therefore each has a C function of its own, which knows its index.
+// functions written in C do, so that pickle stores their name. Python tells a C function nothing but its __self__,
+// so each function here has a C function of its own, with the index of its row built in.
 
 #include <array>
 #include <exception>

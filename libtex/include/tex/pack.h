@@ -153,8 +153,8 @@ struct PackedTexture : Texture {
 //
 // BC4's layout is two endpoints of 8 bits, then 16 indices of 3 bits, texel 0 in the lowest bits, little-endian. BC3's
 // colours are two of 5, 6 and 5 bits, red highest, then 16 indices of 2 bits (Direct3D 11.3 Functional Specification,
-// 19.5). The bytes match those of pack() without optimisation; PackOptions::rdo is ignored, because it needs many rows
-// of blocks at once.
+// 19.5). Bytes and errors match those of pack() without optimisation; PackOptions::rdo, which needs many rows of
+// blocks at once, is ignored.
 //
 // Precondition: components are finite. Errors: bad_option (x and y have not the same extent, at least 1x1; the encoding
 // is not one of the five; pitch is less than 16 bytes for each block of a row). Unless it fails, it allocates no

@@ -140,8 +140,8 @@ struct Curvature {
 // Texels with z below 1e-6 count as flat in `divergence`, which cannot have their slopes; so do, in both, texels with a
 // component that is NaN or infinite.
 //
-// Errors: bad_option (the map has no texels, or more than kMaxExtent in a direction; an option is none of its
-// enumerators), out_of_memory, cancelled.
+// Errors: bad_option (the map has no texels, or more than kMaxExtent in a direction; an option has an unknown
+// value), out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.
 [[nodiscard]] TEX_API Result<Curvature> curvature(const NormalMap& map, const CurvatureOptions& options = {},
                                                   const Execution& execution = {});

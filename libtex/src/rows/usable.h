@@ -20,7 +20,7 @@ namespace tex::inline v1 {
 template <class E, std::size_t N>
 [[nodiscard]] Result<void> check_known(std::string_view option, const Named<E> (&table)[N], E value) {
     if (!name_of(table, value).empty()) return {};
-    return bad_option(std::string(option) + ": is none of its enumerators");
+    return bad_option(std::string(option) + ": unknown value");
 }
 template <class E, std::size_t N>
 [[nodiscard]] Result<void> check_known(std::string_view option, const Named<E> (&table)[N], std::optional<E> value) {
