@@ -11,6 +11,7 @@
 #include "kernels/unpack.h"
 #include "rows/channel_names.h"
 #include "rows/decode_rows.h"
+#include "rows/other_rows.h"
 #include "rows/stored_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include <ImfChannelList.h>
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
 
