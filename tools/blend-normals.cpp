@@ -10,6 +10,7 @@
 
 #include "batch/repack.h"
 #include "cli/usage_error.h"
+#include "fields/blend_fields.h"
 #include "options/layers.h"
 #include "options/mips.h"
 #include "tasks/written_levels.h"
@@ -82,7 +83,8 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
 void BlendNormals::add_blend() {
     command.group("Blend");
     command.choice(blend_.mode, "--mode", "M", kBlendModeNames, "how two normals become one");
-    command.number(blend_.base_scale, "--base-scale", "S", {-kMaxScale, kMaxScale}, "make the base steeper or flatter");
+    command.number(blend_.base_scale, "--base-scale", "S", range_of(&BlendOptions::base_scale),
+                   "make the base steeper or flatter");
     command.choice(blend_.scale_mode, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     command
         .option("--extent", "N|WxH", "the width and height of the result in texels",

@@ -5,6 +5,7 @@
 
 #include "batch/repack.h"
 #include "cli/usage_error.h"
+#include "fields/blend_fields.h"
 
 namespace {
 
@@ -40,7 +41,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
     files.add(command);
     command.group("Scale");
     command
-        .number(scale_, "--scale", "S", {-kMaxScale, kMaxScale},
+        .number(scale_, "--scale", "S", range_of(&Scaling::scale),
                 "the factor, required; 0 is flat, negative turns bumps into dents")
         .preset = "";
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");

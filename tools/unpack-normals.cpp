@@ -9,6 +9,7 @@
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "fields/blend_fields.h"
 #include "tasks/name_pattern.h"
 
 namespace {
@@ -47,7 +48,8 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     option.words = {{"all", "every level, if the output can hold them"}};
     option.completes = cli::Completes::words;
     option.preset = fmt::format("{}", level_);
-    command.number(scale_, "--scale", "S", {-kMaxScale, kMaxScale}, "make normals steeper or flatter; negative: dents");
+    command.number(scale_, "--scale", "S", range_of(&Scaling::scale),
+                   "make normals steeper or flatter; negative: dents");
     command.choice(scale_mode_, "--scale-mode", "M", kScaleModeNames, "how they are scaled");
     apart_.add(command, files, normals);
     output.add(command, cli::default_encodings(Encoding::rgb8), "as in the input", Container::png);

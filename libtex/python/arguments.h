@@ -241,18 +241,6 @@ struct Convert<Rgb> {
     static std::string type() { return "tuple[float, float, float]"; }
 };
 
-// The fields of a structure for x and y as one argument: a value for both, or a pair.
-template <class T>
-struct Axes {
-    T& x;
-    T& y;
-};
-
-template <class T>
-Axes<T> axes(T& x, T& y) {
-    return {x, y};
-}
-
 py::tuple tuple_of(Extent extent);
 
 }  // namespace tex::python

@@ -15,8 +15,6 @@ struct FromColor : ColorOptions {
     FromColor() { space = "sRGB"; }
 };
 
-void check(const HeightOptions& options) { need(options.blur_sigma >= 0.0f, "blur_sigma", "must be 0 or more"); }
-
 void add_strengths(Module& module) {
     module.verb("strength_from_world",
                 {{"extent", "tuple[int, int]"}, {"range", "float"}, {"width", "float"}, {"height", "float", "0.0"}},
@@ -81,7 +79,6 @@ void add_heights(Module& module) {
         "The heights of a picture, or of an array (height, width) or (height, width, channels), of which "
         "`channel` chooses one. `report` is a dict that gets the fields of HeightReport.",
         [](Call& call, HeightOptions& options, Running& running) -> py::object {
-            check(options);
             const Picture image(call["image"], "image");
             if (call.has("report") && !py::isinstance<py::dict>(call["report"]))
                 raise_type("report", "a dict", call["report"]);
@@ -102,8 +99,6 @@ void add_heights(Module& module) {
         "HeightField, or a path or an Image, of which height_field() chooses the channel. bumpiness (1 for an array) "
         "and wrap ('repeat' for an array) are a value or a pair for x and y.",
         [](Call& call, Relief& relief, BakeOptions& options, Running& running) -> py::object {
-            need(options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma, "gaussian_sigma",
-                 "must be above 0 and at most 64");
             const HeightField field = field_from(call["height"], "height", relief, false);  // bake() checks
             return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));
         });

@@ -36,19 +36,7 @@ void each_field(Scene& o, F& f) {
     f("decoder", o.decoder);
 }
 
-void check(const PreviewOptions& options) {
-    const auto finite = [](float value, const char* name) { need(std::isfinite(value), name, "must be finite"); };
-    finite(options.spin, "spin");
-    finite(options.bump_scale, "bump_scale");
-    finite(options.maximum, "maximum");
-    if (!options.camera) return;
-    finite(options.camera->yaw, "camera: yaw");
-    finite(options.camera->pitch, "camera: pitch");
-    finite(options.camera->field_of_view, "camera: field_of_view");
-}
-
 py::object previewed(Call& call, Scene& given, PreviewOptions& options, Running& running) {
-    check(options);
     const MipChain map = chain_from(call["n"], "n");
     MipChain detail;
     Plane<float> height;

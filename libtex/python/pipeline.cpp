@@ -117,8 +117,6 @@ void each_field(BakeFields& o, F& f) {
 py::object baked(Call& call, BakeFields& fields, Running& running) {
     BakeFileOptions& options = fields.file;
     need(std::isfinite(fields.bumpiness_x) && std::isfinite(fields.bumpiness_y), "bumpiness", "must be finite");
-    need(options.bake.gaussian_sigma > 0.0f && options.bake.gaussian_sigma <= kMaxGaussianSigma, "bake",
-         "gaussian_sigma must be above 0 and at most 64");
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     const Strength strength{fields.bumpiness_x, fields.bumpiness_y};

@@ -32,12 +32,6 @@ void each_field(MeshSelection& o, F& f) {
     f("tangents", o.tangents);
 }
 
-template <class F>
-void each_field(ConvertOptions& o, F& f) {
-    f("padding", o.padding);
-    f("subsamples", o.subsamples);
-}
-
 namespace {
 
 constexpr const char* kMeshPath = "str | PathLike[str]";

@@ -14,8 +14,7 @@ constexpr const char* kInvalid =
     " An array may have texels that are NaN, as unpack(..., keep_invalid=True) returns them; those of a path, an Image "
     "or a Texture are flat, as unpack() makes them.";
 
-py::object integrated(Call& call, BakeOptions& bake, IntegrateOptions& options, Running& running) {
-    options.bake = bake;
+py::object integrated(Call& call, IntegrateOptions& options, Running& running) {
     const NormalMap map = map_from(call["n"], "n", Sharing::reads, Normals::any);
     Integration found = running.run([&](const Execution& e) { return integrate(map, options, e); });
     py::dict result;
@@ -42,7 +41,7 @@ py::object bent(Call& call, CurvatureOptions& options, Running& running) {
 }  // namespace
 
 void add_surfaces(Module& module) {
-    module.verb<BakeOptions, IntegrateOptions, Running>(
+    module.verb<IntegrateOptions, Running>(
         "integrate", {{"n", kMapSource}}, "dict[str, Any]",
         std::string("A dict of the fields of Integration: 'height' and 'degrees' are arrays (height, width), and "
                     "'curl' has the "

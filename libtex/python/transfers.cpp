@@ -49,28 +49,6 @@ struct Convert<Reach> {
     static std::string type() { return "float | str"; }
 };
 
-template <class F>
-void each_field(TransferOptions& o, F& f) {
-    f("rays", o.rays);
-    f("front", o.front);
-    f("back", o.back);
-    f("hit", o.hit);
-    f("backfaces", o.backfaces);
-    f("straight_angle", o.straight_angle);
-    f("straight_width", o.straight_width);
-    f("padding", o.padding);
-    f("subsamples", o.subsamples);
-    f("object", o.object);
-    f("heights", o.heights);
-    f("positions", o.positions);
-    f("occlusion", o.occlusion);
-    f("bent", o.bent);
-    f("thickness", o.thickness);
-    f("vertex_colors", o.vertex_colors);
-    f("rays_per_hit", o.rays_per_hit);
-    f("occlusion_distance", o.occlusion_distance);
-}
-
 namespace {
 
 struct LowDecoder {

@@ -10,7 +10,9 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -19,6 +21,7 @@
 #include <vector>
 
 #include "arguments.h"
+#include "errors.h"
 #include "fields.h"
 
 namespace tex::python {
@@ -37,10 +40,27 @@ public:
     explicit Reader(py::dict keywords, const std::vector<Parameter>& others = {}) : keywords_(std::move(keywords)) {
         for (const Parameter& other : others) names_.push_back(other.name);
     }
+    // Of the dict that is the argument called `name`.
+    Reader(py::dict keywords, const char* name) : keywords_(std::move(keywords)), of_(std::string(name) + ": ") {}
 
     template <class T>
     void operator()(const char* name, T& field, const char* = nullptr) {
         if (has(name)) read(name, take(name), field);
+    }
+    template <class T, class E, std::size_t N>
+    void operator()(const char* name, T&& field, const Named<E> (&)[N]) {
+        (*this)(name, std::forward<T>(field));
+    }
+    template <class T>
+    void operator()(const char* name, T& field, const Range& range) {
+        (*this)(name, field);
+        need_in(range, name, field);
+    }
+    template <class T>
+    void operator()(const char* name, Axes<T> field, const Range& range) {
+        (*this)(name, field);
+        need_in(range, name, field.x);
+        need_in(range, name, field.y);
     }
     template <class T>
     void operator()(const char* name, Axes<T> field, const char* = nullptr) {
@@ -61,6 +81,16 @@ public:
 private:
     template <class T>
     static void read(const char* name, const py::object& given, T& field);
+    // Raises BadOptionError for a number out of range, as the verb would.
+    template <class T>
+    void need_in(const Range& range, const char* name, const T& value) const {
+        if (!contains(range, static_cast<double>(value)))
+            raise({ErrorCode::bad_option, {}, of_ + name + ": " + requirement(range)});
+    }
+    template <class T>
+    void need_in(const Range& range, const char* name, const std::optional<T>& value) const {
+        if (value) need_in(range, name, *value);
+    }
     py::object take(const char* name);
     bool has(const char* name) {
         names_.emplace_back(name);
@@ -69,6 +99,7 @@ private:
 
     py::dict keywords_;
     std::vector<std::string> names_;  // that fields have
+    std::string of_;                  // "camera: "
 };
 
 // A structure whose fields each_field() lists.
@@ -86,7 +117,7 @@ template <Fielded T>
 T fields_from(py::handle given, const char* name) {
     if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict of its fields", given);
     T options;
-    Reader reader(py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr())));
+    Reader reader(py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr())), name);
     each_field(options, reader);
     reader.finish(name);
     return options;
@@ -116,6 +147,14 @@ public:
         } else {
             list(name, type, Convert<T>::type(), Convert<T>::shown(field));
         }
+    }
+    template <class T, class E, std::size_t N>
+    void operator()(const char* name, T&& field, const Named<E> (&)[N]) {
+        (*this)(name, std::forward<T>(field));
+    }
+    template <class T>
+    void operator()(const char* name, T&& field, const Range&) {
+        (*this)(name, std::forward<T>(field));
     }
     template <class T>
     void operator()(const char* name, Axes<T> field, const char* type = nullptr) {

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fields/bake_fields.h"
+#include "fields/field_check.h"
 #include "kernels/bake.h"
 #include "rows/bake_rows.h"
 #include "rows/usable.h"
@@ -18,10 +20,9 @@
 namespace tex::inline v1 {
 
 Result<void> validate(const BakeOptions& options) {
-    if (auto known = check_known("kernel", kGradientKernelNames, options.kernel); !known) return known;
-    const bool in_range = options.gaussian_sigma > 0.0f && options.gaussian_sigma <= kMaxGaussianSigma;
-    if (options.kernel != GradientKernel::gaussian || in_range) return {};
-    return bad_option("gaussian_sigma: must be above 0 and at most 64");
+    BakeOptions read = options;
+    if (read.kernel != GradientKernel::gaussian) read.gaussian_sigma = BakeOptions().gaussian_sigma;  // not read
+    return check_fields(read);
 }
 
 Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, const Execution& execution) {

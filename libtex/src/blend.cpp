@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "fields/blend_fields.h"
+#include "fields/field_check.h"
 #include "rows/blend_rows.h"
 #include "rows/other_rows.h"
 #include "rows/usable.h"
@@ -52,29 +54,11 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
 }  // namespace
 
 Result<void> validate(const BlendOptions& options) {
-    if (!(std::abs(options.base_scale) <= kMaxScale)) return bad_option("base_scale: must be at most 1e6 in magnitude");
-    if (options.extent != Extent{}) {
-        if (auto usable = check_usable(options.extent, "extent"); !usable) return usable;
-    }
-    return first_error(check_known("mode", kBlendModeNames, options.mode),
-                       check_known("scale_mode", kScaleModeNames, options.scale_mode),
-                       check_known("wrap_x", kWrapNames, options.wrap_x),
-                       check_known("wrap_y", kWrapNames, options.wrap_y));
+    if (auto valid = check_fields(options); !valid) return valid;
+    return options.extent == Extent{} ? Result<void>() : check_usable(options.extent, "extent");
 }
 
-Result<void> validate(const Layer& layer) {
-    const auto is_tiling = [](float tiling) { return tiling > 0.0f && tiling <= kMaxTiling; };
-    const auto is_offset = [](float offset) { return std::abs(offset) <= kMaxTiling; };
-    if (!(std::abs(layer.scale) <= kMaxScale)) return bad_option("scale: must be at most 1e6 in magnitude");
-    if (!is_tiling(layer.tiling_x) || !is_tiling(layer.tiling_y))
-        return bad_option("tiling: must be above 0 and at most 4096");
-    if (!is_offset(layer.offset_x) || !is_offset(layer.offset_y))
-        return bad_option("offset: must be at most 4096 in magnitude");
-    if (!std::isfinite(layer.rotation)) return bad_option("rotation: must be finite");
-    if (!(layer.strength >= 0.0f && layer.strength <= 1.0f)) return bad_option("strength: must be from 0 to 1");
-    return first_error(check_known("wrap_x", kWrapNames, layer.wrap_x),
-                       check_known("wrap_y", kWrapNames, layer.wrap_y));
-}
+Result<void> validate(const Layer& layer) { return check_fields(layer); }
 
 Result<NormalMap> blend(MipChain base, std::vector<Layer> layers, const BlendOptions& options,
                         const Execution& execution) {

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "blocks/bptc.h"
+#include "fields/field_check.h"
+#include "fields/file_fields.h"
 #include "files/atomic_file.h"
 #include "files/input_file.h"
 #include "files/unfinished_files.h"
@@ -80,12 +82,7 @@ bool can_compress(Container container) { return file_type_of(container).compress
 
 Encoding default_encoding(Container container) { return file_type_of(container).default_encoding; }
 
-Result<void> validate(const WriteOptions& options) {
-    if (options.zstd < 0 || options.zstd > kHighestZstdLevel) return bad_option("zstd: must be from 0 to 22");
-    const int quality = options.jpeg_quality;
-    if (quality < 1 || quality > 100) return bad_option("jpeg_quality: must be from 1 to 100");
-    return check_known("dds_header", kDdsHeaderNames, options.dds_header);
-}
+Result<void> validate(const WriteOptions& options) { return check_fields(options); }
 
 Result<std::vector<std::byte>> encode_file(const Texture& texture, Container container, const WriteOptions& options,
                                            const Execution& execution) {

@@ -9,6 +9,8 @@
 #include <optional>
 #include <utility>
 
+#include "fields/field_check.h"
+#include "fields/mesh_fields.h"
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
 #include "rows/other_rows.h"
@@ -191,12 +193,7 @@ Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Di
 
 }  // namespace
 
-Result<void> validate(const ConvertOptions& options) {
-    if (options.padding < 0) return bad_option("padding: must be 0 or more");
-    if (options.subsamples < 1 || options.subsamples > kMaxSubsamples)
-        return bad_option("subsamples: must be from 1 to 8");
-    return {};
-}
+Result<void> validate(const ConvertOptions& options) { return check_fields(options); }
 
 Result<ConvertedMap> to_object_space(const NormalMap& map, const TangentSpace& space, const ConvertOptions& options,
                                      const Execution& execution) {

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "fields/field_check.h"
+#include "fields/height_fields.h"
 #include "rows/blur.h"
 #include "rows/height_source.h"
 #include "rows/usable.h"
@@ -77,15 +79,7 @@ Result<Strength> strength_from_uv(Extent extent, double r) {
     return Strength{strength, strength};
 }
 
-Result<void> validate(const HeightOptions& options) {
-    constexpr float kMaxBlurSigma = 256.0f;
-    if (!(options.blur_sigma >= 0.0f && options.blur_sigma <= kMaxBlurSigma))
-        return bad_option("blur_sigma: must be from 0 to 256");
-    return first_error(check_known("channel", kHeightChannelNames, options.channel),
-                       check_known("deband", kDebandNames, options.deband),
-                       check_known("wrap_x", kWrapNames, options.wrap_x),
-                       check_known("wrap_y", kWrapNames, options.wrap_y));
-}
+Result<void> validate(const HeightOptions& options) { return check_fields(options); }
 
 Result<PictureHeights> height_field(const Image& image, const HeightOptions& options, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<PictureHeights> {

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "fields/field_check.h"
+#include "fields/surface_fields.h"
 #include "kernels/angle.h"
 #include "kernels/slopes.h"
 #include "kernels/stored.h"
@@ -69,18 +71,7 @@ Result<void> measure_curl(const NormalMap& map, const BakeOptions& bake, Integra
 
 Result<void> validate(const IntegrateOptions& options) {
     if (auto valid = validate(options.bake); !valid) return valid;
-    for (const float bumpiness : {options.bumpiness_x, options.bumpiness_y}) {
-        if (!(std::abs(bumpiness) >= 1e-20f && std::abs(bumpiness) <= 1e20f))
-            return bad_option("bumpiness: must be from 1e-20 to 1e20 in magnitude");
-    }
-    if (!(options.least_z > 0.0f && options.least_z <= 1.0f))
-        return bad_option("least_z: must be above 0 and at most 1");
-    constexpr float kLeast = 1e-6f;  // below, a response is nothing but the rounding of floats
-    if (options.least_response != 0.0f && !(options.least_response >= kLeast && options.least_response <= 1.0f))
-        return bad_option("least_response: must be from 1e-6 to 1, or 0");
-    if (options.most_steps < 1) return bad_option("most_steps: must be 1 or more");
-    return first_error(check_known("wrap_x", kWrapNames, options.wrap_x),
-                       check_known("wrap_y", kWrapNames, options.wrap_y));
+    return check_fields(options);
 }
 
 Result<Integration> integrate(const NormalMap& map, const IntegrateOptions& options, const Execution& execution) {

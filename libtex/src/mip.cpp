@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "fields/field_check.h"
+#include "fields/mip_fields.h"
 #include "kernels/mip.h"
 #include "rows/axis_filter.h"
 #include "rows/border.h"
@@ -101,19 +103,13 @@ Result<void> make_levels(const std::vector<Halving>& steps, const Execution& exe
 }  // namespace
 
 Result<void> validate(const MipOptions& options) {
-    if (options.levels < 0) return bad_option("levels: must be 0, for all, or more");
-    if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
     if (options.fade && (options.fade->first < 0 || options.fade->first >= options.fade->last))
         return bad_option("fade: first must be 0 or more, and less than last");
     if (options.any_z && (options.domain != MipDomain::vector || options.fade))
         return bad_option("any_z: needs the domain vector and no fade");
     if (options.follow_normals() && options.domain != MipDomain::vector)
         return bad_option("blue and alpha: roughness and gloss need the domain vector");
-    return first_error(
-        check_known("filter", kMipFilterNames, options.filter), check_known("domain", kMipDomainNames, options.domain),
-        check_known("wrap_x", kWrapNames, options.wrap_x), check_known("wrap_y", kWrapNames, options.wrap_y),
-        check_known("blue", kOtherKindNames, options.blue), check_known("alpha", kOtherKindNames, options.alpha),
-        check_known("roughness", kRoughnessModelNames, options.roughness));
+    return check_fields(options);
 }
 
 Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, const Execution& execution) {

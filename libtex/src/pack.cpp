@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "blocks/block_half.h"
+#include "fields/field_check.h"
+#include "fields/pack_fields.h"
 #include "kernels/encode.h"
 #include "rows/other_rows.h"
 #include "rows/pack_rows.h"
@@ -65,16 +67,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
 
 }  // namespace
 
-Result<void> validate(const PackOptions& options) {
-    const RdoOptions& rdo = options.rdo;
-    if (!(rdo.mean >= 0.0f && rdo.mean <= 180.0f)) return bad_option("rdo.mean: must be from 0 to 180");
-    if (!(rdo.max >= 0.0f && rdo.max <= 180.0f)) return bad_option("rdo.max: must be from 0 to 180");
-    if (rdo.window < kLeastRdoWindow || rdo.window > kMostRdoWindow)
-        return bad_option("rdo.window: must be from 64 to 1048576");
-    return first_error(
-        check_known("encoding", kEncodingNames, options.encoding), check_known("y_axis", kYAxisNames, options.y_axis),
-        check_known("effort", kEffortNames, options.effort), check_known("metric", kMetricNames, options.metric));
-}
+Result<void> validate(const PackOptions& options) { return check_fields(options); }
 
 Result<PackedTexture> pack(const MipChain& chain, const PackOptions& options, const Execution& execution) {
     return no_throw(execution, [&]() -> Result<PackedTexture> {

@@ -3,6 +3,9 @@
 
 #include <tex/pipeline.h>
 
+#include "fields/blend_fields.h"
+#include "fields/field_check.h"
+#include "fields/mip_fields.h"
 #include "files/input_file.h"
 #include "rows/usable.h"
 #include "stream/bake_stream.h"
@@ -32,9 +35,10 @@ Result<void> validate(const BakeFileOptions& options) {
 
 Result<void> validate(const PackFileOptions& options) {
     if (options.level && *options.level < 0) return bad_option("level: must be 0 or more");
-    if (options.scale && !(std::abs(options.scale->scale) <= kMaxScale))
-        return bad_option("scale: must be at most 1e6 in magnitude");
-    if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
+    if (options.scale) {
+        if (auto valid = check_fields(*options.scale); !valid) return valid;
+    }
+    if (!contains(kNoLimit, options.max_side)) return bad_option("max_side: " + requirement(kNoLimit));
     if (options.roughness && !options.mip) return bad_option("roughness: needs mip");
     if (auto valid = check_no_heights(options.others); !valid) return valid;
     return options.mip ? validate(*options.mip) : Result<void>();

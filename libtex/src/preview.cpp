@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "fields/field_check.h"
+#include "fields/preview_fields.h"
 #include "mesh/frames.h"
 #include "preview/canvas.h"
 #include "preview/measures.h"
@@ -36,7 +38,6 @@ bool finite(std::initializer_list<float> values) {
 bool not_negative(const Rgb& c) { return finite({c.r, c.g, c.b}) && c.r >= 0.0f && c.g >= 0.0f && c.b >= 0.0f; }
 
 Result<void> check_light(const PreviewOptions& o) {
-    if (!finite({o.light.x, o.light.y, o.light.z})) return bad("the light is not finite");
     if (o.light.kind == LightKind::directional && o.light.x == 0.0f && o.light.y == 0.0f && o.light.z == 0.0f) {
         return bad("the direction to the light has no length");
     }
@@ -44,30 +45,14 @@ Result<void> check_light(const PreviewOptions& o) {
         !not_negative(o.material.specular)) {
         return bad("a colour is below 0 or not finite");
     }
-    if (!(o.material.shininess > 0.0f) || !finite({o.material.shininess})) return bad("the shininess must be above 0");
     return {};
 }
 
-Result<void> check_geometry(const PreviewOptions& o) {
-    const auto outside = [](int value, int least, int greatest) { return value < least || value > greatest; };
+Result<void> check_size(const PreviewOptions& o) {
+    const auto outside = [](int value, int least) { return value < least || value > kLargestSize; };
     const bool chosen = o.size.width == 0 && o.size.height == 0;
-    if (!chosen && (outside(o.size.width, 1, kLargestSize) || outside(o.size.height, 0, kLargestSize))) {
+    if (!chosen && (outside(o.size.width, 1) || outside(o.size.height, 0)))
         return bad("a picture is 1 to 16384 pixels wide and high");
-    }
-    if (outside(o.tiles_x, 1, 256) || outside(o.tiles_y, 1, 256)) return bad("tiles are 1 to 256");
-    if (outside(o.anisotropy, 1, 16)) return bad("the anisotropy is 1 to 16");
-    if (outside(o.parallax.steps, 0, 1024)) return bad("parallax takes 0 to 1024 steps");
-    if (!finite({o.parallax.amount, o.parallax.limit}) || o.parallax.limit < 0.0f)
-        return bad("parallax is not finite, or its limit below 0");
-    if (!finite({o.bump_scale, o.maximum, o.spin}) || o.maximum < 0.0f) return bad("a scale is not finite or below 0");
-    const Detail& d = o.detail;
-    if (!finite({d.tiling_x, d.tiling_y, d.offset_x, d.offset_y, d.scale}))
-        return bad("the detail's tiling, offset or scale is not finite");
-    if (!o.camera) return {};
-    const Camera& c = *o.camera;
-    if (!finite({c.yaw, c.pitch, c.field_of_view}) || std::abs(c.pitch) > 89.0f)
-        return bad("the camera's pitch is -89 to 89 degrees");
-    if (c.field_of_view < 0.0f || c.field_of_view > 120.0f) return bad("the field of view is 0 to 120 degrees");
     return {};
 }
 
@@ -246,13 +231,7 @@ Result<Texture> show(const Job& job) {
 }  // namespace
 
 Result<void> validate(const PreviewOptions& options) {
-    return first_error(check_light(options), check_geometry(options), check_known("show", kShowNames, options.show),
-                       check_known("shape", kShapeNames, options.shape),
-                       check_known("scale_mode", kScaleModeNames, options.scale_mode),
-                       check_known("wrap_x", kWrapNames, options.wrap_x),
-                       check_known("wrap_y", kWrapNames, options.wrap_y),
-                       check_known("light.kind", kLightKindNames, options.light.kind),
-                       check_known("material.model", kSpecularModelNames, options.material.model));
+    return first_error(check_light(options), check_size(options), check_fields(options));
 }
 
 Result<Texture> preview(const PreviewScene& scene, const PreviewOptions& options, const Execution& execution) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "fields/blend_fields.h"
+#include "fields/field_check.h"
 #include "kernels/scale.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
@@ -28,10 +30,7 @@ Result<void> scale_rows(NormalMap& map, float scale, ScaleMode mode, const Execu
         span);
 }
 
-Result<void> check_scale(float scale, ScaleMode mode) {
-    if (std::abs(scale) <= kMaxScale) return check_known("mode", kScaleModeNames, mode);  // not for NaN
-    return bad_option("scale: must be at most 1e6 in magnitude");
-}
+Result<void> check_scale(float scale, ScaleMode mode) { return check_fields(Scaling{scale, mode}); }
 
 }  // namespace
 

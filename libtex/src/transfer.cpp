@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "fields/field_check.h"
+#include "fields/mesh_fields.h"
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
 #include "rays/found_reach.h"
@@ -216,21 +218,13 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
 
 Result<void> validate(const TransferOptions& options) {
     const auto is_length = [](const Reach& reach) {
-        return reach.unit == Reach::Unit::automatic || (reach.value >= 0.0 && std::isfinite(reach.value));
+        return reach.unit == Reach::Unit::automatic || contains(kNotNegative, reach.value);
     };
     if (!is_length(options.front)) return bad_option("front: must be 0 or more");
     if (!is_length(options.back)) return bad_option("back: must be 0 or more");
     if (!is_length(options.straight_width)) return bad_option("straight_width: must be 0 or more");
-    if (!(options.straight_angle >= 0.0 && options.straight_angle <= 180.0))
-        return bad_option("straight_angle: must be from 0 to 180");
-    if (options.padding < 0) return bad_option("padding: must be 0 or more");
-    if (options.subsamples < 1 || options.subsamples > kMaxSubsamples)
-        return bad_option("subsamples: must be from 1 to 8");
-    if (options.rays_per_hit < 1 || options.rays_per_hit > kMaxRaysPerHit)
-        return bad_option("rays_per_hit: must be from 1 to 4096");
     if (!is_length(options.occlusion_distance)) return bad_option("occlusion_distance: must be 0 or more");
-    return first_error(check_known("rays", kRayModeNames, options.rays),
-                       check_known("hit", kHitChoiceNames, options.hit));
+    return check_fields(options);
 }
 
 Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,

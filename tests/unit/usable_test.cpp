@@ -150,8 +150,8 @@ TEST(Usable, OptionsOutOfRangeAreNamed) {
     EXPECT_EQ(of<BlendFileOptions>([](auto& o) { o.layers.emplace_back().scale = 1e9f; }),
               "scale: must be at most 1e6 in magnitude");
     EXPECT_EQ(of<HeightOptions>([](auto& o) { o.blur_sigma = kNan; }), "blur_sigma: must be from 0 to 256");
-    EXPECT_EQ(of<PreviewOptions>([](auto& o) { o.tiles_x = 257; }), "tiles are 1 to 256");
-    EXPECT_EQ(of<PreviewOptions>([](auto& o) { o.material.shininess = 0.0f; }), "the shininess must be above 0");
+    EXPECT_EQ(of<PreviewOptions>([](auto& o) { o.tiles_x = 257; }), "tiles: must be from 1 to 256");
+    EXPECT_EQ(of<PreviewOptions>([](auto& o) { o.material.shininess = 0.0f; }), "material.shininess: must be above 0");
     EXPECT_EQ(of<WriteOptions>([](auto& o) { o.zstd = 23; }), "zstd: must be from 0 to 22");
     EXPECT_EQ(of<WriteOptions>([](auto& o) { o.jpeg_quality = 0; }), "jpeg_quality: must be from 1 to 100");
     EXPECT_EQ(refusal(validate(std::vector<Step>())), "steps: there must be at least one");

@@ -133,6 +133,13 @@ Row& Command::number(int& target, const std::string& names, std::string value, i
     return row;
 }
 
+Row& Command::number(int& target, const std::string& names, std::string value, Range range, std::string help) {
+    Row& row = option(names, std::move(value), std::move(help),
+                      [&target, range](const std::string& text) { target = parse_int(text, range); });
+    row.preset = fmt::format("{}", target);
+    return row;
+}
+
 Row& Command::choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
                          std::function<void(const std::string& name)> take) {
     std::vector<std::string> valid = names_of(words);

@@ -99,6 +99,7 @@ public:
     Row& text(std::string& target, const std::string& names, std::string value, std::string help);
     Row& number(float& target, const std::string& names, std::string value, Range range, std::string help);
     Row& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
+    Row& number(int& target, const std::string& names, std::string value, Range range, std::string help);
     template <class E, std::size_t N>
     Row& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
                 const std::string& help, bool (*fits)(E) = nullptr) {

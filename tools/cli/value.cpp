@@ -2,8 +2,10 @@
 
 #include "cli/value.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,10 +19,11 @@ namespace {
 thread_local bool is_asking = false;
 
 void ask(AskedNumber::Kind kind, Range range) {
-    if (is_asking) throw AskedNumber{kind, range};
+    if (is_asking) throw AskedNumber{kind, interval_of(range)};
 }
 
-void check_range(std::string_view text, double value, Range range) {
+void check_range(std::string_view text, double value, const Range& given) {
+    const Range range = interval_of(given);
     const bool too_small = range.least_too ? value < range.least : value <= range.least;
     if (!too_small && value <= range.greatest) return;
     if (std::isinf(range.greatest)) {
@@ -70,6 +73,15 @@ int parse_int(std::string_view text, int least, int greatest) {
     const int value = parse_number<int>(text, "a whole number");
     check_range(text, value, {static_cast<double>(least), static_cast<double>(greatest)});
     return value;
+}
+
+int parse_int(std::string_view text, const Range& range) {
+    const auto side = [](double value) {
+        return static_cast<int>(
+            std::clamp(value, double{std::numeric_limits<int>::min()}, double{std::numeric_limits<int>::max()}));
+    };
+    const Range interval = interval_of(range);
+    return parse_int(text, side(interval.least), side(interval.greatest));
 }
 
 std::pair<int, int> parse_pair_of_sides(std::string_view text, int most) {

@@ -6,26 +6,20 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-namespace tex::cli {
+#include "fields/range.h"
 
-// The range of numbers that an option accepts: from least to greatest. least itself is accepted only if `least_too`.
-struct Range {
-    double least = -std::numeric_limits<double>::infinity();
-    double greatest = std::numeric_limits<double>::infinity();
-    bool least_too = true;
-};
-inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), false};
+namespace tex::cli {
 
 [[nodiscard]] float parse_float(std::string_view text, Range range = {});
 [[nodiscard]] double parse_double(std::string_view text, Range range = {});
 [[nodiscard]] int parse_int(std::string_view text, int least, int greatest);
+[[nodiscard]] int parse_int(std::string_view text, const Range& range);
 
 // "N" or "WxH", from 1 to `most`: a width and a height in texels.
 [[nodiscard]] std::pair<int, int> parse_pair_of_sides(std::string_view text, int most);

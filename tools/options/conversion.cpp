@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "cli/value.h"
+#include "fields/mesh_fields.h"
 
 namespace tex::cli {
 
@@ -20,7 +21,9 @@ void ConversionOptions::add(Command& command) {
     padding.preset = "all";
     command
         .option("--subsamples", "N", "divide each texel into N by N squares and average their vectors",
-                [this](const std::string& text) { convert_.subsamples = parse_int(text, 1, kMaxSubsamples); })
+                [this](const std::string& text) {
+                    convert_.subsamples = parse_int(text, range_of(&ConvertOptions::subsamples));
+                })
         .preset = "1";
     command.choice(overlap_, "--overlap", "O", kOverlapNames, "what happens if triangles share texels");
 }

@@ -9,6 +9,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "fields/pack_fields.h"
 #include "tasks/collisions.h"
 
 namespace tex::cli {
@@ -20,14 +21,14 @@ void CurveOptions::add(Command& command) {
                    "pack A with each --rdo-mean in LIST, such as 0,0.1,0.3, and print bytes and angles; 0 is without",
                    [this](const std::string& text) {
                        for (const std::string& mean : split(text, ','))
-                           means_.push_back(parse_float(mean, {0.0, 180.0}));
+                           means_.push_back(parse_float(mean, range_of(&RdoOptions::mean)));
                        if (std::adjacent_find(means_.begin(), means_.end(), std::greater_equal<>()) != means_.end())
                            throw UsageError("its angles must rise");
                    });
     command.choice(format_, "--format", "F", kEncodingNames, "the encoding", can_optimise);
     command.number(rdo_.max, "--rdo-max", "DEG", kAngle, "no texel's angle grows beyond DEG").preset =
         "four times the mean";
-    command.number(rdo_.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,
+    command.number(rdo_.window, "--rdo-window", "BYTES", range_of(&RdoOptions::window),
                    "how far back to look for what a block can copy");
     command.text(plot_, "--plot", "FILE", "draw the curve, as SVG").completes = Completes::files;
 }

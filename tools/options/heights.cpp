@@ -12,6 +12,8 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "fields/bake_fields.h"
+#include "fields/height_fields.h"
 #include "tasks/other_parts.h"
 
 namespace tex::cli {
@@ -107,7 +109,7 @@ void KernelOption::add(Command& command, std::string help) {
         if (bake.kernel != GradientKernel::gaussian) {
             throw UsageError(fmt::format("{} takes no sigma, only gaussian does", name));
         }
-        bake.gaussian_sigma = parse_float(sigma, {0.0, kMaxGaussianSigma, false});
+        bake.gaussian_sigma = parse_float(sigma, range_of(&BakeOptions::gaussian_sigma));
     });
     row.words = words_of(kGradientKernelNames);
     row.completes = Completes::words;
@@ -136,7 +138,7 @@ void HeightGroup::add(Command& command) {
     command.flag(options.invert, "--invert", "white is low: h becomes 1 - h");
     command.choice(options.deband, "--deband", "WHEN", kDebandNames,
                    "regain the bits that rounding to 8 bits took away; see the manual page");
-    command.number(options.blur_sigma, "--blur", "SIGMA", {0.0, 256.0},
+    command.number(options.blur_sigma, "--blur", "SIGMA", range_of(&HeightOptions::blur_sigma),
                    "blur the heights first, by a Gaussian of SIGMA texels");
     command.flag(options.fill_invalid, "--fill-invalid",
                  "replace NaN, infinite and no-data texels by the nearest valid one");

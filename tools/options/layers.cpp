@@ -8,6 +8,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "fields/blend_fields.h"
 #include "options/mips.h"
 
 namespace tex::cli {
@@ -36,10 +37,9 @@ void LayerOptions::add(Command& command) {
     detail.completes = Completes::files;
     detail.repeatable = true;
     command
-        .option("--detail-scale", "S", "make the detail steeper or flatter",
-                [this](const std::string& text) {
-                    scale_.values.push_back(parse_float(text, {-kMaxScale, kMaxScale}));
-                })
+        .option(
+            "--detail-scale", "S", "make the detail steeper or flatter",
+            [this](const std::string& text) { scale_.values.push_back(parse_float(text, range_of(&Layer::scale))); })
         .repeatable = true;
     add_placement(command);
     Row& mask = command.option("--mask", "FILE[:CHANNEL]", "a mask for the detail: white shows all of it",
@@ -49,7 +49,7 @@ void LayerOptions::add(Command& command) {
     command
         .option("--strength", "T", "how much of the detail shows, 0 to 1",
                 [this](const std::string& text) {
-                    strength_.values.push_back(parse_float(text, {0.0, 1.0}));
+                    strength_.values.push_back(parse_float(text, range_of(&Layer::strength)));
                 })
         .repeatable = true;
     Row& y = add_y_in(command, "--detail-y-in", "which way green points in the detail",

@@ -14,6 +14,8 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "fields/file_fields.h"
+#include "fields/pack_fields.h"
 #include "files/path_names.h"
 #include "tasks/job.h"
 #include "tasks/name_pattern.h"
@@ -93,7 +95,7 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
                    [this](const std::string& text) { zstd = parse_zstd(text); });
     command
         .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
-                [this](const std::string& text) { quality = parse_int(text, 1, 100); })
+                [this](const std::string& text) { quality = parse_int(text, range_of(&WriteOptions::jpeg_quality)); })
         .preset = std::to_string(WriteOptions{}.jpeg_quality);
 }
 
@@ -105,7 +107,7 @@ void OutputOptions::add_rdo(Command& command) {
         .preset = "off";
     command.number(rdo.max, "--rdo-max", "DEG", kAngle, "with --rdo-mean, no texel's angle grows beyond DEG").preset =
         "four times the mean";
-    command.number(rdo.window, "--rdo-window", "BYTES", kLeastRdoWindow, kMostRdoWindow,
+    command.number(rdo.window, "--rdo-window", "BYTES", range_of(&RdoOptions::window),
                    "how far back --rdo-mean looks for what a block can copy");
     command.check([this, &command] {
         const std::vector<std::string> more = command.given_of({"--rdo-max", "--rdo-window"});

@@ -14,6 +14,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "fields/mesh_fields.h"
 #include "options/missed_texels.h"
 
 namespace tex::cli {
@@ -65,7 +66,9 @@ void RayOptions::add(Command& command) {
         .preset = fmt::format("{}", extent_.width);
     command
         .option("--subsamples", "N", "rays of a texel: N by N",
-                [this](const std::string& text) { transfer_.subsamples = parse_int(text, 1, kMaxSubsamples); })
+                [this](const std::string& text) {
+                    transfer_.subsamples = parse_int(text, range_of(&TransferOptions::subsamples));
+                })
         .preset = "1";
     command.choice(transfer_.rays, "--rays", "R", kRayModeNames, "the directions of rays");
     add_reach(command, transfer_.front, "--front",
@@ -77,7 +80,7 @@ void RayOptions::add(Command& command) {
     command
         .option("--straight-angle", "DEG", "with --rays straight, edges between faces with a larger angle are hard",
                 [this](const std::string& text) {
-                    transfer_.straight_angle = parse_double(text, {0.0, 180.0, true});
+                    transfer_.straight_angle = parse_double(text, range_of(&TransferOptions::straight_angle));
                 })
         .preset = "30";
     add_reach(command, transfer_.straight_width, "--straight-width",
@@ -98,7 +101,9 @@ void RayOptions::add_second(Command& command) {
     command.group("Second rays");
     command
         .option("--rays-per-hit", "N", "rays from each hit, for occlusion, bent normals and thickness",
-                [this](const std::string& text) { transfer_.rays_per_hit = parse_int(text, 1, kMaxRaysPerHit); })
+                [this](const std::string& text) {
+                    transfer_.rays_per_hit = parse_int(text, range_of(&TransferOptions::rays_per_hit));
+                })
         .preset = fmt::format("{}", transfer_.rays_per_hit);
     add_reach(command, transfer_.occlusion_distance, "--occlusion-distance",
               "how far they reach: a length as --front, or the word", "without limit", "auto");

@@ -14,6 +14,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "fields/preview_fields.h"
 #include "options/heights.h"
 #include "options/mips.h"
 #include "options/surface.h"
@@ -98,8 +99,9 @@ void SceneOptions::add_shape(Command& command) {
             return;
         }
         const auto [x, y] = cut(tiles, 'x');
-        preview.tiles_x = parse_int(x, 1, 256);
-        preview.tiles_y = tiles.find('x') == std::string::npos ? preview.tiles_x : parse_int(y, 1, 256);
+        preview.tiles_x = parse_int(x, range_of(&PreviewOptions::tiles_x));
+        preview.tiles_y =
+            tiles.find('x') == std::string::npos ? preview.tiles_x : parse_int(y, range_of(&PreviewOptions::tiles_y));
     });
     row.words = words_of(kShapeNames);
     row.words.push_back({"tiled:NxM", "a plane of N by M tiles"});
@@ -145,7 +147,8 @@ void SceneOptions::add_material(Command& command) {
     add_file(command, albedo, "--albedo", "the albedo map, in sRGB; linear if it holds floats");
     add_color(command, material.albedo, "--tint", "the albedo, multiplied with its map");
     add_color(command, material.specular, "--specular", "the colour of highlights");
-    command.number(material.shininess, "--shininess", "S", kPositive, "the exponent of highlights");
+    command.number(material.shininess, "--shininess", "S", range_of(&Material::shininess),
+                   "the exponent of highlights");
     command.choice(material.model, "--specular-model", "M", kSpecularModelNames, "how highlights are computed");
     command.number(preview.bump_scale, "--bump-scale", "S", {}, "strength of the map");
     command.choice(preview.scale_mode, "--scale-mode", "MODE", kScaleModeNames,
@@ -188,7 +191,7 @@ void SceneOptions::add_parallax(Command& command) {
     row.completes = Completes::words;
     row.preset = fmt::format("{}", parallax.amount);
     command.number(parallax.limit, "--parallax-limit", "L", {0.0, 1e6}, "the greatest offset, in widths of the map");
-    command.number(parallax.steps, "--parallax-steps", "N", 0, 1024,
+    command.number(parallax.steps, "--parallax-steps", "N", range_of(&Parallax::steps),
                    "march along the view ray in N steps; 0 is one offset");
     check_needs(command, "--parallax", {"--parallax-limit", "--parallax-steps"});
     command.check([this] {
@@ -206,7 +209,7 @@ void SceneOptions::add_sampling(Command& command) {
         {"repeat", "the texture tiles"}, {"clamp", "the border texel again"}, {"mirror", "the texture is mirrored"}};
     row.completes = Completes::words;
     row.preset = name_of(kWrapNames, preview.wrap_x);
-    command.number(preview.anisotropy, "--anisotropy", "N", 1, 16,
+    command.number(preview.anisotropy, "--anisotropy", "N", range_of(&PreviewOptions::anisotropy),
                    "most samples along a texel's longer axis; 1 is trilinear");
 }
 
