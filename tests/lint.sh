@@ -43,7 +43,7 @@ stem() { basename "$1" | sed 's/\.[a-z0-9]*$//'; }
 
 # -- the tree -----------------------------------------------------------------------------------------------
 top=' CMakeLists.txt CMakePresets.json README.md LICENSE CHANGELOG.md CONTRIBUTING.md SECURITY.md'
-top+=' .clang-format .clang-tidy .gitignore .ci libtex tools tests samples man '
+top+=' .clang-format .clang-tidy .gitignore .ci libtex tools tests samples man findings '
 for name in $(printf '%s\n' "${files[@]}" | cut -d/ -f1 | sort -u); do
     case $top in *" $name "*) ;; *) complain "$name does not belong at the top level" ;; esac
 done
