@@ -24,6 +24,14 @@ bool fits_better(double correlation, double other, double confidence, double alo
            confidence >= kExchangedConfidence && along >= kExchangedEnergy * across;
 }
 
+// Nearly all writers put x first, so little shows that it is. Of 36 real maps of 128 texels and more, 34 lean to the
+// right order, and none leans so far to the wrong one.
+bool leans_to_x(const Curl& curl) {
+    constexpr double kLead = 0.04, kLeast = 0.1, kConfidence = 0.9;
+    return std::abs(curl.correlation) >= std::abs(curl.exchanged) + kLead && std::abs(curl.correlation) >= kLeast &&
+           curl.confidence >= kConfidence;
+}
+
 }  // namespace
 
 ChannelOrder::ChannelOrder(Extent extent) : extent_(extent) {
@@ -54,14 +62,15 @@ void ChannelOrder::add_row(int j, const float* red, const float* green) {
 std::optional<Swizzle> ChannelOrder::shown() {
     if (windows_.empty()) return std::nullopt;
     for (Slopes& slopes : slopes_) widen_holes(slopes);
-    if (diagonal_share(slopes_) > kMostDiagonal) return std::nullopt;
+    const bool is_diagonal = diagonal_share(slopes_) > kMostDiagonal;
     const Curl curl = measure_curl(extent_, windows_, [this](std::size_t k) { return std::move(slopes_[k]); });
     if (curl.usable < kLeastUsable) return std::nullopt;
     const CurlSums& sums = curl.scale[curl.best_scale];
     const double p_q = sums.p_square * sums.q_square, px_qy = sums.px_square * sums.qy_square;
-    if (fits_better(curl.correlation, curl.exchanged, curl.confidence, px_qy, p_q)) return kSwizzleXy;
-    if (fits_better(curl.exchanged, curl.correlation, curl.exchanged_confidence, p_q, px_qy)) return kSwizzleYx;
-    return std::nullopt;
+    if (leans_to_x(curl)) return kSwizzleXy;
+    const bool is_exchanged =
+        !is_diagonal && fits_better(curl.exchanged, curl.correlation, curl.exchanged_confidence, p_q, px_qy);
+    return is_exchanged ? std::optional(kSwizzleYx) : std::nullopt;
 }
 
 Result<std::optional<Swizzle>> shown_order(const Texture& texture, const Execution& execution) {
