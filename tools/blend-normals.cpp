@@ -5,10 +5,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include <fmt/format.h>
 #include <tex/tex.h>
 
 #include "batch/repack.h"
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "fields/blend_fields.h"
 #include "options/layers.h"
@@ -127,6 +131,17 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     return options;
 }
 
+// What a detail has beside its normals has no place in the blend.
+void note_other_data(cli::Job& job, const std::string& detail, const std::vector<OtherChannel>& others) {
+    std::vector<std::string> names;
+    for (const OtherChannel& other : others)
+        names.push_back(other.name == 'L' ? "the lengths of vectors" : std::string(1, other.name));
+    job.warn(fmt::format("data beside the normals, in {}, are not blended: the output has there what the base has "
+                         "(--drop: without this warning)",
+                         cli::join(names, " and ")),
+             detail);
+}
+
 Result<void> BlendNormals::process(cli::Job& job) {
     const BlendFileOptions with = options(job);
     auto blended = blend_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
@@ -135,6 +150,7 @@ Result<void> BlendNormals::process(cli::Job& job) {
     normals.note(job, job.task.input, blended->source);
     for (std::size_t k = 0; k < blended->details.size(); ++k) {
         SourceInfo detail = blended->details[k];
+        if (!detail.others.empty() && !normals.drops_others) note_other_data(job, with.layers[k].input, detail.others);
         detail.others.clear();  // only what the base has beside its normals goes along, or is missed
         normals.note(job, with.layers[k].input, detail);
     }

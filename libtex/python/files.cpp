@@ -127,8 +127,10 @@ py::dict describe(const SourceInfo& info) {
     facts["guessed"] = info.guessed;
     facts["y_axis"] = word_of(info.y_axis);
     facts["y_known"] = info.y_known;
+    facts["order_assumed"] = info.order_assumed;
     facts["y_doubtful"] = info.y_doubtful;
     facts["object_space"] = info.object_space;
+    facts["z01"] = info.z01;
     facts["z_doubtful"] = info.z_doubtful;
     facts["not_finite"] = info.not_finite;
     facts["background"] = info.background;

@@ -185,6 +185,7 @@ void each_part(Texture& o, F& f) {
     f(o.levels);
     f(o.swizzle);
     f(o.swizzle_known);
+    f(o.order_open);
     f(o.y_axis);
     f(o.y_known);
     f(o.x_in_grey);

@@ -15,6 +15,7 @@
 #include "fields/field_check.h"
 #include "fields/height_fields.h"
 #include "rows/blur.h"
+#include "rows/height_bytes.h"
 #include "rows/height_source.h"
 #include "rows/usable.h"
 #include "surface/debander.h"
@@ -99,16 +100,23 @@ Result<PictureHeights> height_field(const Image& image, const HeightOptions& opt
         const double smoothed = !debands ? taken : options.fill_invalid ? 0.4 : filled;
 
         std::atomic<std::int64_t> luma_texels{0}, invalid_texels{0}, implausible_texels{0};
+        std::atomic<std::int64_t> red_steps{0}, green_steps{0};
         const auto take = [&](int begin, int end) {
             HeightCounts all;
             for (int j = begin; j < end; ++j) all += take_heights(image, *source, *with, j, field.height.row(j));
             luma_texels += all.luma;
             invalid_texels += all.invalid;
             implausible_texels += all.implausible;
+            red_steps += all.red_steps;
+            green_steps += all.green_steps;
         };
         if (auto done = parallel_for(execution, extent.height, rows_per_strip(extent), take, {0.0, taken}); !done)
             return done.error();
 
+        HeightCounts found;
+        found.red_steps = red_steps;
+        found.green_steps = green_steps;
+        if (auto exchanged = exchanged_bytes(found, source->mixture)) return *exchanged;
         if (invalid_texels > 0 && (!options.fill_invalid || invalid_texels == extent.texels())) {
             const auto [column, row] = first_invalid(field.height);
             return invalid_heights(invalid_texels, column, row, extent, *with);

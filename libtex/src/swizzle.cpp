@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 
 #include <tex/pack.h>
 
+#include "checks/channel_order.h"
 #include "rows/swizzle_evidence.h"
 #include "threads/no_throw.h"
 
@@ -31,6 +33,11 @@ std::string layout_name(const Swizzle& swizzle) {
 
 Result<Swizzle> guess_swizzle(const Texture& texture, const Execution& execution) {
     return no_throw([&]() -> Result<Swizzle> {
+        if (texture.order_open) {
+            const Result<std::optional<Swizzle>> order = shown_order(texture, execution);
+            if (!order) return order.error();
+            return order->value_or(texture.swizzle);
+        }
         if (texture.swizzle_known || format_info(texture.format).channels < 4) return texture.swizzle;
         const auto image = decode(texture, 0, execution);
         if (!image) return image.error();

@@ -100,6 +100,18 @@ TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
               "out/base.dds: \\\n  base.exr \\\n  detail.exr\nout/other.dds: \\\n  other.exr \\\n  detail.exr\n");
 }
 
+TEST_F(BlendNormals, WhatADetailHasBesideItsNormalsIsMissedAloud) {
+    does("pack-normals", {"detail.exr", "-o", "d.png", "--format", "rgba8", "--alpha", "bricks.png:r"});
+    const Ran ran = go("blend-normals", {"base.exr", "d.png", "-o", "x.exr"});
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_EQ(
+        ran.err,
+        "blend-normals: warning: d.png: data beside the normals, in A, are not blended: the output has there what "
+        "the base has (--drop: without this warning)\n");
+    does("blend-normals", {"base.exr", "d.png", "-o", "x.exr", "--drop"});
+    does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr"});
+}
+
 // A detail is read and filtered once. One as large as the base, whose rows could be read in step, is no exception.
 TEST_F(BlendNormals, ManyBasesShareWhatIsReadOfTheirDetails) {
     const Ran ready =

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "reference/dds_file.h"
 
 namespace tex::cli {
 namespace {
@@ -94,6 +95,58 @@ TEST_F(UnpackNormals, PicturesComeBack) {
     ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "8", "--format", "rgb8"}).code, 0);
     ASSERT_EQ(go("unpack-normals", {"n.dds", "-o", "again.png", "--keep-length"}).code, 0);
     EXPECT_TRUE(scratch_.read("n.png") == scratch_.read("again.png"));
+}
+
+// The bump maps of S.T.A.L.K.E.R.: gloss in R, z in G, y in B, x in A.
+TEST_F(UnpackNormals, AnyChannelsCanHoldTheNormals) {
+    scratch_.add_sample("waves.png", "waves.png");
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.png", "--bumpiness", "8"}).code, 0);
+    auto texture = read_texture(scratch_.path("n.png"));
+    ASSERT_TRUE(texture);
+    std::vector<std::byte> turned;
+    const auto& bytes = texture->levels[0].bytes;
+    for (std::size_t k = 0; k < bytes.size(); k += 3)
+        turned.insert(turned.end(), {bytes[k / 2], bytes[k + 2], bytes[k + 1], bytes[k]});
+    texture->format = Format::rgba8_unorm;
+    texture->levels[0].bytes = turned;
+    texture->swizzle_known = false;
+    ASSERT_TRUE(write_texture(scratch_.path("bump.png"), *texture));
+    for (const char* channels : {"abg", "x=a,y=b,z=g", "z=g,x=a,y=b"}) {
+        ASSERT_EQ(go("unpack-normals", {"bump.png", "-o", "again.png", "--swizzle", channels, "--drop"}).code, 0);
+        const auto made = read_texture(scratch_.path("again.png"));
+        ASSERT_TRUE(made);
+        EXPECT_EQ(made->levels[0].bytes, bytes) << channels;
+    }
+    const Ran two = go("unpack-normals", {"bump.png", "-o", "two.png", "--swizzle", "ab", "--json", "--drop"});
+    ASSERT_EQ(two.code, 0);
+    EXPECT_EQ(nlohmann::json::parse(two.out)["source"]["swizzle"], "__yx");
+    for (const char* wrong : {"aab", "abx", "x=a", "x=a,x=b", "x=a,y=q", "a", "abgr", "y=b,z=g"})
+        EXPECT_EQ(go("unpack-normals", {"bump.png", "-o", "x.png", "--swizzle", wrong}).code, 2) << wrong;
+}
+
+// A real writer's file is in the data; here the texels of a plane show nothing.
+TEST_F(UnpackNormals, AnAssumedOrderIsSaid) {
+    MipChain chain;
+    chain.levels.emplace_back(Extent{64, 64});
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            chain.levels[0].x.at(i, j) = 0.0f;
+            chain.levels[0].y.at(i, j) = 0.0f;
+            chain.levels[0].z.at(i, j) = 1.0f;
+        }
+    }
+    const auto texture = pack(chain, {Encoding::bc5});
+    ASSERT_TRUE(texture);
+    auto file = reference::dds_coded(64, 64, 1, reference::four_cc("ATI2"));
+    const auto& bytes = texture->levels[0].bytes;
+    file.data.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    scratch_.write("a.dds", write_dds(file));
+    const Ran ran = go("unpack-normals", {"a.dds", "-o", "x.png"});
+    EXPECT_EQ(ran.code, 0);
+    EXPECT_NE(ran.err.find("its FourCC ATI2 leaves open whether x or y comes first, and its texels do not show it"),
+              std::string::npos)
+        << ran.err;
+    EXPECT_EQ(go("unpack-normals", {"a.dds", "-o", "x.png", "--bc5-order", "xy"}).err, "");
 }
 
 TEST_F(UnpackNormals, LevelsAreChosen) {

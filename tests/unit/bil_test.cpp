@@ -58,6 +58,19 @@ TEST_F(Bil, ReadsEveryTypeAndOrder) {
     EXPECT_EQ(texels_of(read("NBITS 32\nBYTEORDER M\nPIXELTYPE FLOAT", floats)), "1. -10. 0. 1000.");
 }
 
+// GDAL 3.6.2 and 3.13.3 (EHdr) read 258 and 772 from these bytes, and 2.3879393e-38 from the floats.
+TEST_F(Bil, TheHighByteIsFirstIfTheHeaderHasNoOrder) {
+    const std::string bytes("\1\2\3\4\5\6\7\10\11\12\13\14\15\16\17\20", 16);
+    const auto image = read("NBITS 16", bytes.substr(0, 8));
+    EXPECT_EQ(texels_of(image), "258. 772. 1286. 1800.");
+    EXPECT_EQ(
+        image->remark,
+        "its header has no byteorder, so the high byte is read first; \"byteorder I\" there means the low byte first");
+    EXPECT_EQ(read("NBITS 32\nPIXELTYPE FLOAT", bytes)->planes[0].at(0, 0), 2.3879393e-38f);
+    EXPECT_EQ(read("NBITS 16\nBYTEORDER I", bytes.substr(0, 8))->remark, "");
+    EXPECT_EQ(read("", bytes.substr(0, 4))->remark, "");  // bytes have no order
+}
+
 TEST_F(Bil, SkipsWhatTheHeaderSays) {
     const std::string rows("hh\1\2--\3\4--", 10);
     EXPECT_EQ(texels_of(read("SKIPBYTES 2\nTOTALROWBYTES 4\nBANDROWBYTES 2", rows)), "1. 2. 3. 4.");
@@ -66,7 +79,7 @@ TEST_F(Bil, SkipsWhatTheHeaderSays) {
 }
 
 TEST_F(Bil, TheNoDataValueIsTheHeadersAndTellsTheSign) {
-    const auto image = read("NBITS 16\nNODATA -9999", std::string("\xf1\xd8\0\0\0\0\0\0", 8));
+    const auto image = read("NBITS 16\nBYTEORDER I\nNODATA -9999", std::string("\xf1\xd8\0\0\0\0\0\0", 8));
     ASSERT_TRUE(image) << image.error().message();
     EXPECT_EQ(image->no_data, -9999.0f);
     EXPECT_EQ(image->planes[0].at(0, 0), -9999.0f);

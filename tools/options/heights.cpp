@@ -199,7 +199,7 @@ constexpr const char* kStoredText =
 
 void note_implausible(Job& job, std::int64_t texels, HeightChannel channel) {
     const auto name = name_of(kHeightChannelNames, channel);
-    if (channel != HeightChannel::rg16) {
+    if (channel != HeightChannel::rg16 && channel != HeightChannel::gr16) {
         return job.warn(
             fmt::format("{} heights are below -12000 m or above 9000 m: is the picture really {}?", texels, name));
     }

@@ -64,6 +64,30 @@ std::string_view alpha_encoding(const SourceInfo& input, Container container) {
     return found;
 }
 
+// The layout of "abg", the channels of x, y and, if it is stored, z; or of "x=a,y=b,z=g", in any order.
+std::optional<Swizzle> swizzle_of_channels(const std::string& text) {
+    std::string letters = text;
+    if (text.find('=') != std::string::npos) {
+        letters = "---";
+        for (const std::string& part : split(text, ',')) {
+            const std::size_t place = part.size() == 3 && part[1] == '=' ? std::string_view("xyz").find(part[0]) : 3;
+            if (place > 2 || letters[place] != '-') return std::nullopt;
+            letters[place] = part[2];
+        }
+        if (letters[2] == '-') letters.pop_back();
+    }
+    if (letters.size() != 2 && letters.size() != 3) return std::nullopt;
+    constexpr Component kComponents[] = {Component::x, Component::y, Component::z};
+    Swizzle swizzle;
+    swizzle.fill(Component::other);
+    for (std::size_t k = 0; k < letters.size(); ++k) {
+        const std::size_t channel = std::string_view("rgba").find(letters[k]);
+        if (channel >= swizzle.size() || swizzle[channel] != Component::other) return std::nullopt;
+        swizzle[channel] = kComponents[k];
+    }
+    return swizzle;
+}
+
 }  // namespace
 
 Encoding encoding_of(const SourceInfo& input, const Task& task) {
@@ -104,20 +128,25 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_othe
         measures_y = !y.axis;
         unpack.y_axis = y.axis;
     }).preset = "as the file says, else up";
-    Row& row = command.option("--swizzle", "S", "which channels hold what", [this](const std::string& text) {
-        std::vector<std::string> names = names_of(words_of(kSwizzleNames));
-        names.insert(names.end(), {"auto", "rgorag"});
-        const std::string word = known_word(text, names);
-        swizzle = find_by_name(kSwizzleNames, word);
-        rg_or_ag = word == "rgorag";
-    });
+    Row& row =
+        command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
+                       [this](const std::string& text) {
+                           std::vector<std::string> names = names_of(words_of(kSwizzleNames));
+                           names.insert(names.end(), {"auto", "rgorag"});
+                           rg_or_ag = false;
+                           swizzle = swizzle_of_channels(text);
+                           if (swizzle && std::find(names.begin(), names.end(), text) == names.end()) return;
+                           const std::string word = known_word(text, names);
+                           swizzle = find_by_name(kSwizzleNames, word);
+                           rg_or_ag = word == "rgorag";
+                       });
     row.words = words_of(kSwizzleNames);
     row.words.insert(row.words.begin(), {"auto", "as the file says, else guessed from the texels"});
     row.words.push_back({"rgorag", "x in R or A, whichever varies, y in G: R * A in a shader"});
     row.preset = "auto";
     row.completes = Completes::words;
     command.choice(bc5_order, "--bc5-order", "ORDER", kBc5OrderNames, "the channels of BC5 files that do not say")
-        .preset = "yx in ATI2, else xy";
+        .preset = "as the texels of ATI2 show, else xy";
     command.choice(unpack.range, "--range", "R", kValueRangeNames, "how stored floats are read");
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
     command.flag(fills_background, "--fill-background", "fill the background around charts with the nearest normals");
@@ -160,6 +189,12 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
 void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& info) {
     for (const std::string& remark : info.remarks) job.warn(remark, path);
     if (info.srgb) job.warn("declares sRGB colours, which normals are not; its values are used as they are", path);
+    if (info.order_assumed) {
+        job.warn(
+            "its FourCC ATI2 leaves open whether x or y comes first, and its texels do not show it; x is taken to be "
+            "first, --bc5-order yx reads y first",
+            path);
+    }
     if (info.y_doubtful) {
         job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; {} sets it",
                              name_of(kYAxisNames, info.y_axis),
@@ -168,6 +203,12 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
     }
     if (info.not_finite > 0) {
         job.warn(fmt::format("{} texels are NaN or infinite, and become flat", info.not_finite), path);
+    }
+    if (info.z01) {
+        job.warn(
+            "z is stored as it is, from 0 to 1, and not as (z + 1) / 2: vectors have unit length that way alone, and "
+            "are read so (--range unsigned: the usual way)",
+            path);
     }
     if (info.object_space && !info.z_doubtful) {
         job.warn(

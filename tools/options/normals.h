@@ -28,7 +28,7 @@ enum class Bc5Order { xy, yx };
 
 inline constexpr Named<Bc5Order> kBc5OrderNames[] = {
     {Bc5Order::xy, "xy", "x first, as Direct3D's BC5"},
-    {Bc5Order::yx, "yx", "y first, as ATI2 files"},
+    {Bc5Order::yx, "yx", "y first, as ATI's 3Dc"},
 };
 
 // What the lengths of stored vectors are, if they are not 1 by intention.

@@ -47,6 +47,9 @@ bool choose_type(Samples& samples);
 // byte order, others as a stream of bits, most significant bit first. They go to every `step`-th sample of `to`.
 void unpack(const Samples& samples, const std::byte* row, std::size_t count, std::size_t step, std::byte* to);
 
+// Writes a sample that stands for this value, as unpack() would; false if no sample has the value.
+bool put_value(double value, const Samples& samples, std::byte* to);
+
 // The code of sample k of a row of integers of up to 16 bits.
 std::uint64_t code_at(const std::byte* row, int bits, std::size_t k);
 

@@ -4,11 +4,16 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+
+#include <half.h>
 
 #include "decoders.h"
 
 namespace tex::reader {
 namespace {
+
+constexpr double kGreatest = std::numeric_limits<float>::max();
 
 // A floating-point number of 24 bits: sign, 7 bits of exponent, 16 bits of fraction.
 float float_of_24(std::uint32_t code) {
@@ -122,6 +127,28 @@ void unpack(const Samples& samples, const std::byte* row, std::size_t count, std
         return;
     }
     for (std::size_t k = 0; k < count; ++k) put_sample(code_at(row, samples.bits, k), samples, to + k * step * bytes);
+}
+
+bool put_value(double value, const Samples& samples, std::byte* to) {
+    if (samples.format == 3) {
+        const auto single = static_cast<float>(std::clamp<double>(value, -kGreatest, kGreatest));
+        if (samples.type == ReaderType::f16) {
+            const Imath::half half(single);
+            std::memcpy(to, &half, sizeof half);
+        } else {
+            std::memcpy(to, &single, sizeof single);
+        }
+        return true;
+    }
+    const bool is_signed = samples.format == 2;
+    const double end = std::ldexp(1.0, samples.bits - (is_signed ? 1 : 0));
+    if (value != std::floor(value) || value >= end || value < (is_signed ? -end : 0.0)) return false;
+    const std::uint64_t code =
+        is_signed ? static_cast<std::uint64_t>(static_cast<std::int64_t>(value)) : static_cast<std::uint64_t>(value);
+    Samples as_handed_over = samples;
+    as_handed_over.is_inverted = false;
+    put_sample(code & ~std::uint64_t{0} >> (64 - samples.bits), as_handed_over, to);
+    return true;
 }
 
 void name_channels(ReaderHeader& header) {

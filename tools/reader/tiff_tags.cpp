@@ -64,8 +64,10 @@ void read_tags(TIFF* tiff, ReaderHeader& header) {
     header.orientation = orientation;
     std::uint16_t count = 0;
     const std::uint16_t* extra = nullptr;
-    if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra) != 0)
+    if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra) != 0 && count > 0) {
         header.is_multiplied = std::find(extra, extra + count, EXTRASAMPLE_ASSOCALPHA) == extra + count ? 0 : 1;
+        header.has_alpha = extra[count - 1] == EXTRASAMPLE_UNSPECIFIED ? 0 : 1;
+    }
     if (const std::optional<double> value = number_of(text_of(tiff, kGdalNoData))) {
         header.has_no_data = 1;
         header.no_data = *value;

@@ -241,9 +241,10 @@ TEX_API void remove_unfinished_files() noexcept;
 // the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported, data
 // format descriptors that contradict the VkFormat bad_data. KTX 1: the formats of Format in OpenGL's numbers. Of arrays
 // and cube maps, ReadOptions::layer is read; volumes are unsupported.
-// ATI2 without a swizzle code holds y first (3Dc, ATI 2005); with 'A2XY' x is first.
-// EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are rounded up. Anything else
-// is read as a picture: one level.
+// ATI2 with the code 'A2XY' holds x first, and so it does if the signature of GIMP or of NVIDIA's texture tools is in
+// the header. Without either, the file leaves the order open (Texture::order_open): 3Dc has y first (ATI 2005), nearly
+// all other writers x. EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are
+// rounded up. Anything else is read as a picture: one level.
 //
 // Every size computed from a header is checked against the file's length before memory is allocated. Errors: as
 // read_image().
@@ -292,9 +293,11 @@ struct SourceInfo {
     Swizzle swizzle = {};      // with which it was read
     bool guessed = false;      // the swizzle comes from the texels, and is not merely rgb in a file that looks like rgb
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
-    bool y_known = false;      // y_axis comes from the file, the caller or the texels; otherwise it is assumed
-    bool y_doubtful = false;   // it is assumed, and the texels clearly show the other direction
+    bool order_assumed = false;   // neither the file nor its texels say whether x or y is first: it was taken to be x
+    bool y_known = false;         // y_axis comes from the file, the caller or the texels; otherwise it is assumed
+    bool y_doubtful = false;      // it is assumed, and the texels clearly show the other direction
     bool object_space = false;    // more than 5 % of the texels that were inspected point away from the surface
+    bool z01 = false;             // z was read as ValueRange::z01, which the texels show
     bool z_doubtful = false;      // z is stored, but does not follow x and y: other data may be in its place
     std::int64_t not_finite = 0;  // texels of the base level with a component that is NaN or infinite; they become flat
     double background = 0.0;      // the share of those that are black, grey or white, if it is 1 % or more
@@ -315,7 +318,8 @@ struct Source {
 // smaller levels are left out.
 //
 // Errors, all of which name the file: those of the three functions; unsupported if there is only one channel; bad_data
-// if y is to be measured and the texels do not show it clearly.
+// if y is to be measured and the texels do not show it clearly, or if red, blue and alpha are 1 everywhere and green
+// varies: DXT5nm without the alpha that held x.
 [[nodiscard]] TEX_API Result<Source> read_normals(const std::string& path, const SourceOptions& options = {},
                                                   bool base_only = false, const Execution& execution = {});
 

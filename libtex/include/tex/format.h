@@ -295,6 +295,9 @@ struct Texture {
     // if that channel is alpha (DDPF_ALPHA, DXGI_FORMAT_A8_UNORM), the swizzle is 000_.
     Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
+    // BC5 of which the file does not say whether x or y comes first (DDS with the FourCC ATI2 and no code).
+    // guess_swizzle() looks at the texels.
+    bool order_open = false;
     YAxis y_axis = YAxis::up;
     bool y_known = false;
 
@@ -335,7 +338,7 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
     {kSwizzleDxt5nm, "dxt5nm", "x in A, y in G (Unity; also xGxR, AG)"},
     {{Component::other, Component::y, Component::z, Component::x}, "rxgb", "x in A, y in G, z in B (Doom 3)"},
     {kSwizzleXy, "rg", "x in R, y in G"},
-    {kSwizzleYx, "gr", "y in R, x in G (3Dc, ATI2)"},
+    {kSwizzleYx, "gr", "y in R, x in G (3Dc)"},
     {{Component::z, Component::y, Component::x, Component::other}, "bgr", "z, y, x in R, G, B"},
     {kSwizzleXxxy, "ra", "x in R, G and B, y in A (ASTC)"},
 };
@@ -345,8 +348,9 @@ inline constexpr Named<Swizzle> kSwizzleNames[] = {
 [[nodiscard]] TEX_API std::string layout_name(const Swizzle& swizzle);
 
 // Finds the channels of `texture` that hold the normal. This is its own swizzle if the file states it or if the format
-// leaves no choice (fewer than four channels). Otherwise the texels of the base level decide, up to about 2^20 of them,
-// spread over the map:
+// leaves no choice (fewer than four channels). If Texture::order_open is set, it is the order of x and y in which the
+// slopes of the base level have no curl, or x first if they do not show it clearly. Otherwise the texels of the base
+// level decide, up to about 2^20 of them, spread over the map:
 //
 //   ra       in ASTC and KTX2 (Texture::x_in_grey), R, G and B are equal (x in all three), and A is not 1 everywhere
 //   rgb      R and B are constant (within 8/255), and those of a flat map (x = 0, z = 1): A is something else

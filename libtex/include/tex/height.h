@@ -73,10 +73,12 @@ enum class HeightChannel {
     luma,     // 0.2126 R + 0.7152 G + 0.0722 B (ITU-R BT.709), of the unchanged values
     average,  // (R + G + B) / 3
     max,      // the largest of R, G, B
-    // Heights in two or three bytes; the picture has 8 bits.
+    // Heights in two or three bytes; the picture has 8 bits. Where terrain_rgb and terrarium have an alpha of 0, there
+    // is no height.
     terrain_rgb,  // -10000 + 0.1 (65536 R + 256 G + B) metres (Mapbox)
     terrarium,    // 256 R + G + B / 256 - 32768 metres (Mapzen)
     rg16,         // 256 R + G, divided by 65535 unless ReadOptions::values is `stored`
+    gr16,         // 256 G + R, likewise
 };
 
 inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
@@ -92,6 +94,7 @@ inline constexpr Named<HeightChannel> kHeightChannelNames[] = {
     {HeightChannel::terrain_rgb, "terrain-rgb", "-10000 + 0.1 (65536 R + 256 G + B) metres"},
     {HeightChannel::terrarium, "terrarium", "256 R + G + B / 256 - 32768 metres"},
     {HeightChannel::rg16, "rg16", "256 R + G, heights of 16 bits in two channels"},
+    {HeightChannel::gr16, "gr16", "256 G + R, heights of 16 bits whose low byte is in red"},
 };
 
 struct HeightOptions {
@@ -99,7 +102,8 @@ struct HeightOptions {
     std::string channel_name;  // the whole name of a channel, such as "height.Y", instead of `channel`
     // Texels of exactly this value (after rounding to float) are invalid. It is the number that the file stores, before
     // Image::scale and Image::offset; where integers are read as fractions of their range, the fraction will do too. If
-    // unset, Image::no_data applies (if the file names one). Set it to NaN to treat no finite value as missing.
+    // unset, Image::no_data applies (if the file names one). Set it to NaN to treat no finite value as missing, and to
+    // ignore the alpha of terrain_rgb and terrarium.
     std::optional<float> no_data;
     bool fill_invalid = false;    // invalid texels take the value of the nearest valid one
     bool invert = false;          // h becomes 1 - h, for maps in which white is low
@@ -117,8 +121,8 @@ struct HeightReport {
     std::int64_t luma_texels = 0;     // texels for which `automatic` used luma because R, G, B differ
     std::int64_t invalid_texels = 0;  // NaN, infinite or no-data texels, all of which were filled
     DebandReport deband = {};         // all zeros if HeightOptions::deband is off
-    // With terrain_rgb and terrarium: texels lower than -12000 m or higher than 9000 m. With rg16: those with R = G, as
-    // all texels of a grey picture have.
+    // With terrain_rgb and terrarium: texels lower than -12000 m or higher than 9000 m. With rg16 and gr16: those with
+    // R = G, as all texels of a grey picture have.
     std::int64_t implausible_texels = 0;
     bool stored = false;  // as Image::stored
     std::string remark;   // as Image::remark
@@ -141,8 +145,9 @@ struct PictureHeights : HeightField {
 // texels tell deband() nothing about the heights.
 //
 // Errors: bad_option  the picture lacks the channel (the reason lists its channels), or has not the 8 bits that
-//                     terrain_rgb, terrarium and rg16 need; as validate(options)
-//         bad_data    invalid texels without fill_invalid (the reason names the column and row of the first texel, and
+//                     terrain_rgb, terrarium, rg16 and gr16 need; as validate(options)
+//         bad_data    rg16 or gr16 whose high byte varies from texel to texel more than twice as much as the low one;
+//                     invalid texels without fill_invalid (the reason names the column and row of the first texel, and
 //                     the count); or no valid texel at all
 //         out_of_memory, cancelled
 // The result is the same for every number of threads.

@@ -207,8 +207,8 @@ enum class TangentSource { file, mikktspace, meshopt };
 
 inline constexpr Named<TangentSource> kTangentSourceNames[] = {
     {TangentSource::file, "file", "those that the mesh has stored"},
-    {TangentSource::mikktspace, "mikktspace", "MikkTSpace: most bakers, Blender, Unity, Unreal"},
-    {TangentSource::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot"},
+    {TangentSource::mikktspace, "mikktspace", "MikkTSpace on triangles: most bakers, Unity, Unreal"},
+    {TangentSource::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot after 4.6"},
 };
 
 // Which parts of a mesh use a map. What is not given does not restrict the choice.
@@ -320,8 +320,8 @@ struct UvTiles {
 enum class TangentMethod { mikktspace, meshopt };
 
 inline constexpr Named<TangentMethod> kTangentMethodNames[] = {
-    {TangentMethod::mikktspace, "mikktspace", "MikkTSpace: most bakers, Blender, Unity, Unreal"},
-    {TangentMethod::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot"},
+    {TangentMethod::mikktspace, "mikktspace", "MikkTSpace on triangles: most bakers, Unity, Unreal"},
+    {TangentMethod::meshopt, "meshopt", "meshoptimizer 1.3 with its own weights: Godot after 4.6"},
 };
 
 // The most triangles that may meet at one vertex if their tangents point in opposite directions (mikktspace) or at all

@@ -166,23 +166,27 @@ struct PackedTexture : Texture {
 //
 // The bytes of a texture, or a picture, to normals.
 
-// How stored floats are read. (Integers are unambiguous: unorm is unsigned, snorm is signed.)
+// How stored floats are read. (Integers are unambiguous, except with z01: unorm is unsigned, snorm is signed.)
 enum class ValueRange {
     automatic,  // as the file states; else by the values, see unpack()
     signed_,    // components of the normal themselves
     unsigned_,  // (n + 1) / 2
+    // x and y as they would be otherwise, z itself, from 0 to 1. Floats are then unsigned. Some exporters write this
+    // (glTF-Sample-Models, issue 364); integers, too.
+    z01,
 };
 
 inline constexpr Named<ValueRange> kValueRangeNames[] = {
     {ValueRange::automatic, "auto", "as the file says, else by the values"},
     {ValueRange::signed_, "signed", "floats are the normal's components, -1 to 1"},
     {ValueRange::unsigned_, "unsigned", "floats are (n + 1) / 2, 0 to 1"},
+    {ValueRange::z01, "z01", "z is stored as it is, 0 to 1, x and y as (n + 1) / 2"},
 };
 
 struct UnpackOptions {
     std::optional<Swizzle> swizzle;            // instead of the texture's own
     std::optional<YAxis> y_axis;               // instead of the texture's own; without it, y is up in pictures
-    ValueRange range = ValueRange::automatic;  // for floats only
+    ValueRange range = ValueRange::automatic;  // for floats only, but for z01
     bool snap_flat = false;                    // 8-bit unorm values from 127/255 to 128/255 are 0, not -+0.0039
     bool keep_length = false;                  // do not normalise vectors, to pack them again without loss
     bool keep_invalid = false;                 // vectors that are not finite become NaN, not (0, 0, 1)

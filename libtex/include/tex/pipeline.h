@@ -217,10 +217,10 @@ struct PackFileReport {
 // interlaced PNGs and for outputs, and the plane that RoughnessFile::map returns. A picture that can hold only one
 // level gets the base level. The roughness files appear after the normal map files.
 //
-// A stream cannot look at all texels before it writes the first. If the layout depends on the texels (four channels
-// without a swizzle; floats without a range), the likeliest layout of the format is assumed: x, y, z in R, G, B; x in A
-// and y in G in BC3; signed floats. If the texels turn out to contradict this, the file is read once more, and nothing
-// of the first attempt remains.
+// What the texels alone can tell is settled before the first row is written: the layout of four channels without a
+// swizzle, the order of x and y in BC5 (Texture::order_open), the range of floats, z from 0 to 1, and y if it is to be
+// measured. Rows of the base level are read until they show it, all of them at most, and the file is then read again
+// from its start.
 //
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.
@@ -292,8 +292,8 @@ struct BlendFileReport {
 //
 // The base is read row by row, and so are the details that have the result's extent and are not rotated, tiled or moved
 // up or down, unless `shared` has room for them. The other details are held as whole maps, because any row of the
-// result may need any of their rows. Interlaced PNGs and masks are also held whole. If a layout depends on the texels,
-// it is assumed as pack_file() describes. TIFF and JPEG are encoded as whole pictures.
+// result may need any of their rows. Interlaced PNGs and masks are also held whole. What
+// only texels can tell is found out as pack_file() describes. TIFF and JPEG are encoded as whole pictures.
 //
 // The output appears whole or not at all; files for each level appear as bake_file() describes. Output to standard
 // output or a FIFO is held in memory until it is complete.
@@ -340,8 +340,7 @@ struct StepsReport {
 //
 // Of the steps before the last, only the settings that concern normals count: source, heights, strength, bake, level,
 // scale, layers and blend, others.alpha, and the direction of y that `pack` gives. Rows go from step to step, so memory
-// holds what bake_file(), pack_file() and blend_file() say for each. If the layout of a file depends on its texels, a
-// step before the last reads the file once more.
+// holds what bake_file(), pack_file() and blend_file() say for each.
 //
 // Errors: bad_option (as validate(steps)), and those of the three functions.
 [[nodiscard]] TEX_API Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps,

@@ -172,11 +172,16 @@ double CurlSums::exchanged_correlation() const {
 }
 
 double diagonal_share(const Stored& stored) {
+    std::vector<Slopes> parts;
+    for (const Rect& window : sample_windows(stored.extent())) parts.push_back(slopes_of(stored, window));
+    return diagonal_share(parts);
+}
+
+double diagonal_share(const std::vector<Slopes>& parts) {
     constexpr int kSide = 16;  // texels of a region: so small that a structure has one direction in it
     double along = 0.0, all = 0.0;
-    for (const Rect& window : sample_windows(stored.extent())) {
-        Slopes slopes = slopes_of(stored, window);
-        slopes = halved(halved(slopes));
+    for (const Slopes& part : parts) {
+        const Slopes slopes = halved(halved(part));
         const auto [width, height] = slopes.extent();
         for (int y = 0; y + kSide <= height; y += kSide) {
             for (int x = 0; x + kSide <= width; x += kSide) {

@@ -27,6 +27,13 @@ inline constexpr double kLeastUsable = 0.5;  // the share of texels that must ho
 // round z or x and y together. Maps of structures along the axes that show their direction have 0.036 and more.
 inline constexpr double kLeastAcross = 0.017;
 
+// When x and y count as exchanged (N308), or as in the other order (channel_order.h).
+inline constexpr double kExchangedLead = 0.1;  // of one correlation before the other
+inline constexpr double kExchangedLeast = 0.2;
+inline constexpr double kExchangedConfidence = 0.99;
+inline constexpr double kMostDiagonal = 0.65;  // of diagonal_share(): real maps have at most 0.48, ropes 0.80 and more
+inline constexpr double kExchangedEnergy = 0.25;  // of products of two energies: the change across is half that along
+
 // Sums over texels. All results are ratios of these sums.
 struct CurlSums {
     double cross = 0.0;      // sum of dp/dy dq/dx, with y up as the file defines up
@@ -77,6 +84,7 @@ Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::fu
 // axes) to 1 (lines at 45 degrees, of either direction). Where they are diagonal, x and y have no curl either way:
 // exchanging them mirrors the structure onto itself.
 double diagonal_share(const Stored& stored);
+double diagonal_share(const std::vector<Slopes>& parts);
 
 // Where green points, if that is clear.
 std::optional<YAxis> clear_y(const Curl& curl);

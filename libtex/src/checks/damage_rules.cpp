@@ -34,11 +34,6 @@ constexpr double kAlphaCorrelation = 0.9;
 constexpr double kHalfAlphaShare = 0.01;
 constexpr double kExchangedMean = 0.4;
 constexpr double kExchangedZ = 0.2;
-constexpr double kExchangedLead = 0.1;
-constexpr double kExchangedLeast = 0.2;
-constexpr double kExchangedConfidence = 0.99;
-constexpr double kMostDiagonal = 0.65;     // of diagonal_share(): real maps have at most 0.48, ropes 0.80 and more
-constexpr double kExchangedEnergy = 0.25;  // of products of two energies: the change across is half the change along
 
 // The mean of |length - 1| over every 7th sampled texel, after `restore` is applied to the stored values of x, y and z.
 template <class Restore>

@@ -280,8 +280,10 @@ constexpr Rule kRules[] = {
      "Export the mesh again, with tangents that are made anew.", ""},
     {"N705", "tangents-not-mikktspace", mesh, note, true, "The tangents are not those of MikkTSpace.",
      "Maps from most bakers fit MikkTSpace's tangents. With others, the shading is wrong by the angle between both, "
-     "unless the map was baked with these.",
-     "If the map was baked for MikkTSpace, convert it with convert-normals --tangents-in mikktspace --tangents file.",
+     "unless the map was baked with these. Blender makes them on quads, up to 11.6 degrees from those of the triangles "
+     "that it exports: then a map that Blender baked fits the tangents of the file.",
+     "If the map was baked for MikkTSpace on triangles, convert it with convert-normals --tangents-in mikktspace "
+     "--tangents file. In Blender, triangulate the mesh before you bake and export it.",
      ""},
     {"N706", "tangent-sign-opposite", mesh, error, true, "w of tangents contradicts the UVs.",
      "In these triangles, the bitangent points down in the map. Bumps are lit from the wrong side there. Exporters "

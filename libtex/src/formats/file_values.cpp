@@ -45,17 +45,20 @@ public:
         if (rows_->strength()) describe_heights(*rows_->strength());
         describe_stored(stored);
         describe_numbers(scale_, offset_);
-        describe_remark(rows_->remark());
         describe_orientation(rows_->orientation(), rows_->is_turned());
+        if (!rows_->absent().empty()) describe_absent(rows_->absent());
+        describe_remark(rows_->remark());
+        if (rows_->is_masked()) describe_masked();
         if (std::optional<float> value = rows_->no_data()) {
             number(&*value, 1);
-            describe_no_data(value);
+            describe_no_data(value, rows_->is_no_data_assumed());
         }
     }
 
     [[nodiscard]] int rows_together() const override { return rows_->rows_together(); }
     [[nodiscard]] bool is_random() const override { return rows_->is_random(); }
     void choose_planes(const std::vector<bool>& wanted) override { rows_->choose_planes(wanted); }
+    void keep_masked() override { rows_->keep_masked(); }
     [[nodiscard]] int block_rows() const override { return rows_->block_rows(); }
     Result<void> decode(int first, int count, std::byte* rows) override { return rows_->decode(first, count, rows); }
     [[nodiscard]] bool can_peek() const override { return rows_->can_peek(); }

@@ -88,6 +88,7 @@ bool apply_normal_mark(std::string_view mark, Texture& texture) {
     }
     texture.swizzle = *swizzle;
     texture.swizzle_known = true;
+    texture.order_open = false;
     texture.normal_encoding = "signed";
     return true;
 }

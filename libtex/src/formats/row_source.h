@@ -48,6 +48,8 @@ public:
     [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
     [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
     [[nodiscard]] std::optional<float> no_data() const { return no_data_; }  // as in Image
+    // The file does not say it, but files of its type usually mean it.
+    [[nodiscard]] bool is_no_data_assumed() const { return is_no_data_assumed_; }
     // What the file says about its samples: a GeoTIFF, for example, states units.
     [[nodiscard]] const StoredSamples& stored() const { return stored_; }
     // As Image::stored, Image::scale and Image::offset.
@@ -59,6 +61,10 @@ public:
     [[nodiscard]] bool is_turned() const { return is_turned_; }     // Texture::turned
     // The file says that colours were multiplied by alpha. They are read as they are stored.
     [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
+    // That parts of the file were never written, as a sentence, which remark() has too.
+    [[nodiscard]] const std::string& absent() const { return absent_; }
+    // Whether store() makes texels NaN of which the file says, by a mask, that they hold no data.
+    [[nodiscard]] bool is_masked() const { return is_masked_; }
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double offset() const { return offset_; }
 
@@ -75,6 +81,9 @@ public:
     // Makes store() and no_data() give the numbers that the file stores, exactly; false if this source cannot. Call
     // this before rows are stored.
     virtual bool store_numbers() { return false; }
+
+    // Makes store() ignore masks: vectors and colours stay as they are stored. Call this before rows are stored.
+    virtual void keep_masked() {}
 
     // decode() and store() may touch more rows than they make: up to the next multiple of this number.
     [[nodiscard]] virtual int block_rows() const { return kBlockEdge; }
@@ -122,7 +131,10 @@ protected:
     // A mark of heights is no mark of normals.
     void describe_mark(std::string mark);
     void describe_heights(const Strength& strength) { strength_ = strength; }
-    void describe_no_data(std::optional<float> value) { no_data_ = value; }
+    void describe_no_data(std::optional<float> value, bool is_assumed = false) {
+        no_data_ = value;
+        is_no_data_assumed_ = is_assumed;
+    }
     void describe_stored(const StoredSamples& stored) { stored_ = stored; }
     void describe_remark(std::string remark) { remark_ = std::move(remark); }
     void describe_multiplied() {
@@ -134,6 +146,11 @@ protected:
         is_turned_ = is_turned;
         if (orientation != 1) remark_ = orientation_text(orientation, is_turned);
     }
+    void describe_absent(std::string text) {
+        remark_ += (remark_.empty() ? "" : "; ") + text;
+        absent_ = std::move(text);
+    }
+    void describe_masked() { is_masked_ = true; }
     void describe_numbers(double scale, double offset) {
         has_numbers_ = true;
         scale_ = scale;
@@ -149,10 +166,13 @@ private:
     std::string normal_encoding_;
     std::string normal_mark_;
     std::optional<float> no_data_;
+    bool is_no_data_assumed_ = false;
     StoredSamples stored_;
     bool has_numbers_ = false;
     std::string remark_;
     int orientation_ = 1;
+    std::string absent_;
+    bool is_masked_ = false;
     bool is_multiplied_ = false;
     bool is_turned_ = true;
     std::optional<Strength> strength_;

@@ -29,6 +29,8 @@ Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<R
     texture.head.normal_encoding = (*rows)->normal_encoding();
     texture.head.orientation = (*rows)->orientation();
     texture.head.turned = (*rows)->is_turned();
+    if (!(*rows)->absent().empty()) texture.head.remarks.push_back((*rows)->absent());
+    (*rows)->keep_masked();
     if ((*rows)->is_multiplied()) texture.head.remarks.emplace_back(kMultipliedText);
     apply_found_mark((*rows)->normal_mark(), texture.head);
     texture.levels.push_back(std::move(*rows));

@@ -31,6 +31,8 @@ V Component(D d, V value, const UnpackRule& rule) {
     return hn::IfThenZeroElse(flat, n);
 }
 
+V StoredZ(D d, V value, const UnpackRule& rule) { return rule.is_z01 ? value : Component(d, value, rule); }
+
 // False for NaN and infinity.
 M IsFinite(D d, V value) { return hn::Lt(value, hn::Set(d, std::numeric_limits<float>::infinity())); }
 
@@ -80,7 +82,7 @@ void UnpackRow(const float* x, const float* y, const float* z, const UnpackRule&
         V ny = Component(d, hn::LoadU(d, y + i), rule);
         if (rule.flip_y) ny = hn::Neg(ny);
         const Vec3 n = z == nullptr ? Reconstruct(d, nx, ny, rule)
-                                    : Finish(d, {nx, ny, Component(d, hn::LoadU(d, z + i), rule)}, rule);
+                                    : Finish(d, {nx, ny, StoredZ(d, hn::LoadU(d, z + i), rule)}, rule);
         StoreVec3(d, n, out_x + i, out_y + i, out_z + i);
     }
 }

@@ -7,6 +7,7 @@ namespace tex::inline v1 {
 
 struct UnpackRule {
     bool is_unsigned = true;  // values are (n + 1) / 2
+    bool is_z01 = false;      // z is stored as it is
     bool snap_flat = false;   // unsigned values from 127/255 to 128/255 are 0
     bool flip_y = false;
     bool keep_length = false;

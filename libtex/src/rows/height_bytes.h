@@ -3,16 +3,23 @@
 
 #pragma once
 
-#include <cstdint>
+#include <optional>
 
 #include <tex/height.h>
 
 #include "kernels/height_field.h"
+#include "rows/height_source.h"
 
 namespace tex::inline v1 {
 
-// Writes `count` heights. `has_numbers`: the values are 0 to 255, not 0 to 1. Returns the implausible ones
-// (HeightReport). Precondition: `channel` is terrain_rgb, terrarium or rg16.
-std::int64_t height_bytes_row(const ColorRow& in, HeightChannel channel, bool has_numbers, int count, float* out);
+// Writes `count` heights. `has_numbers`: the values are 0 to 255, not 0 to 1. Texels whose alpha is 0 become NaN;
+// `alpha` may be null. Returns what is implausible (HeightReport), and the steps. Precondition: `channel` is
+// terrain_rgb, terrarium, rg16 or gr16.
+HeightCounts height_bytes_row(const ColorRow& in, const float* alpha, HeightChannel channel, bool has_numbers,
+                              int count, float* out);
+
+// Whether the counts of a picture show that the two bytes of rg16 or gr16 are exchanged. From texel to texel, the low
+// byte of a surface varies more than the high one.
+std::optional<Error> exchanged_bytes(const HeightCounts& counts, HeightChannel channel);
 
 }  // namespace tex::inline v1

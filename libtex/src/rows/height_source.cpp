@@ -57,7 +57,7 @@ Error not_in_bytes(HeightChannel channel) {
 }
 
 // Writes row j of the heights before any further processing.
-HeightCounts take_row(const Image& image, const HeightSource& source, int j, float* out) {
+HeightCounts take_row(const Image& image, const HeightSource& source, bool heeds_alpha, int j, float* out) {
     const auto row = [&](int plane) { return image.planes[static_cast<std::size_t>(plane)].row(j); };
     const int count = image.extent().width;
     if (source.plane != kNoPlane) {
@@ -72,7 +72,9 @@ HeightCounts take_row(const Image& image, const HeightSource& source, int j, flo
         case HeightChannel::terrain_rgb:
         case HeightChannel::terrarium:
         case HeightChannel::rg16:
-            return {0, 0, height_bytes_row(colors, source.mixture, source.has_numbers, count, out)};
+        case HeightChannel::gr16:
+            return height_bytes_row(colors, heeds_alpha && source.alpha != kNoPlane ? row(source.alpha) : nullptr,
+                                    source.mixture, source.has_numbers, count, out);
         default: return {automatic_row(colors, count, out)};
     }
     return {};
@@ -149,7 +151,9 @@ Result<HeightSource> find_height_source(const PictureFacts& facts, const HeightO
         case HeightChannel::terrain_rgb:
         case HeightChannel::terrarium:
         case HeightChannel::rg16:
+        case HeightChannel::gr16:
             if (facts.bits != 8 && !facts.stored) return not_in_bytes(channel);
+            if (channel == HeightChannel::terrain_rgb || channel == HeightChannel::terrarium) source.alpha = alpha();
             if (colours != nullptr) return source;
             break;
     }
@@ -166,6 +170,8 @@ Result<HeightOptions> with_no_data(const HeightOptions& options, const PictureFa
         if (!is_made) with.no_data = value_of(*options.no_data, facts);
         return with;
     }
+    // Infinity, which is invalid anyway, says that heights may be missing although no value stands for them.
+    if (source.alpha != kNoPlane || facts.is_masked) with.no_data = std::numeric_limits<float>::infinity();
     if (!facts.no_data) return with;
     // A texel whose channels all have that value.
     Image texel;
@@ -175,7 +181,7 @@ Result<HeightOptions> with_no_data(const HeightOptions& options, const PictureFa
         if (const Result<void> converted = linear->convert(texel, 1); !converted) return converted.error();
     }
     Plane<float> height(Extent{1, 1});
-    take_row(texel, source, 0, height.row(0));
+    take_row(texel, source, false, 0, height.row(0));
     with.no_data = height.at(0, 0);
     return with;
 }
@@ -183,7 +189,8 @@ Result<HeightOptions> with_no_data(const HeightOptions& options, const PictureFa
 HeightCounts take_heights(const Image& image, const HeightSource& source, const HeightOptions& options, int j,
                           float* out) {
     const float no_data = options.no_data.value_or(std::numeric_limits<float>::quiet_NaN());
-    HeightCounts counts = take_row(image, source, j, out);
+    const bool heeds_alpha = !options.no_data || !std::isnan(*options.no_data);
+    HeightCounts counts = take_row(image, source, heeds_alpha, j, out);
     counts.invalid = clean_row(out, image.extent().width, no_data, options.invert);
     return counts;
 }

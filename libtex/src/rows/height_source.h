@@ -22,6 +22,7 @@ struct PictureFacts {
     bool stored = false;
     double scale = 1.0, offset = 0.0;
     std::optional<float> no_data;
+    bool is_masked = false;  // as RowSource::is_masked()
 };
 
 [[nodiscard]] PictureFacts facts_of(const Image& image);
@@ -31,6 +32,7 @@ struct HeightSource {
     HeightChannel mixture = HeightChannel::automatic;
     int plane = -1;  // -1: use the planes red, green and blue
     int red = 0, green = 0, blue = 0;
+    int alpha = -1;            // the plane whose zeros are texels without data, if the mixture has one
     bool has_numbers = false;  // the values are numbers, not fractions
 };
 
@@ -42,11 +44,15 @@ struct HeightCounts {
     std::int64_t luma = 0;         // texels for which `automatic` took luma
     std::int64_t invalid = 0;      // NaN, infinite or no-data texels, which are now NaN
     std::int64_t implausible = 0;  // as in HeightReport
+    // Of heights in bytes: sums of the steps from each texel to the next one of its row.
+    std::int64_t red_steps = 0, green_steps = 0;
 
     HeightCounts& operator+=(const HeightCounts& other) {
         luma += other.luma;
         invalid += other.invalid;
         implausible += other.implausible;
+        red_steps += other.red_steps;
+        green_steps += other.green_steps;
         return *this;
     }
 };

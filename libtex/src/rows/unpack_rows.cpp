@@ -56,13 +56,14 @@ ValueRange range_of(const std::string& normal_encoding, const UnpackOptions& opt
 std::optional<bool> is_unsigned(SampleKind sample, ValueRange range) {
     if (sample == SampleKind::unorm) return true;
     if (sample == SampleKind::snorm || range == ValueRange::signed_) return false;
-    if (range == ValueRange::unsigned_) return true;
+    if (range == ValueRange::unsigned_ || range == ValueRange::z01) return true;
     return std::nullopt;
 }
 
 UnpackRule rule_of(const UnpackOptions& options, SampleKind sample, int bits, YAxis y_axis) {
     UnpackRule rule;
     rule.snap_flat = options.snap_flat && sample == SampleKind::unorm && bits == 8;
+    rule.is_z01 = options.range == ValueRange::z01;
     rule.flip_y = y_axis == YAxis::down;
     rule.keep_length = options.keep_length;
     rule.keep_invalid = options.keep_invalid;

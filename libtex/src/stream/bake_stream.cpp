@@ -72,7 +72,8 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     HeightCounts counts = heights->counts;
     if (terrain != nullptr) (counts = before) += terrain->counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
-    report.heights.remark = terrain != nullptr ? terrain->remark() : heights->remark;
+    report.heights.remark =
+        remark_with_counts(*heights, terrain != nullptr ? terrain->remark() : heights->remark, counts);
     report.strength = {baked.head.bumpiness_x, baked.head.bumpiness_y};
     report.is_stated = !options.strength && heights->stated;
     report.usual_slope = usual.slope();

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <utility>
 
+#include "rows/height_bytes.h"
 #include "surface/debander.h"
 #include "surface/nearest.h"
 
@@ -69,6 +70,7 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
         return {};
     };
     if (const Result<void> read = rows.visit(input, take); !read) return read.error();
+    if (auto exchanged = exchanged_bytes(counts, source.mixture)) return exchanged->of(input);
     if (counts.invalid == extent.texels() || (counts.invalid > 0 && !options.fill_invalid))
         return invalid_heights(counts.invalid, first_invalid.first, first_invalid.second, extent, options);
     const auto smooth =

@@ -84,12 +84,12 @@ public:
         Result<Texture> texture = map_.read(true, execution_);
         if (!texture) return texture.error();
         if (Result<void> fit = check_channels(*texture); !fit) return fit;
-        const Result<Swizzle> swizzle = find_swizzle(*texture, options_, execution_);
-        if (!swizzle) return swizzle.error();
-        Result<Image> image = decode_filled(*texture, *swizzle, options_, execution_);
+        const Result<FoundSwizzle> found = find_swizzle(*texture, options_, execution_);
+        if (!found) return found.error();
+        Result<Image> image = decode_filled(*texture, found->swizzle, options_, execution_);
         if (!image) return image.error();
         image_ = std::move(*image);
-        swizzle_ = *swizzle;
+        swizzle_ = found->swizzle;
         head_ = std::move(*texture);
         head_.levels.clear();
         rows_.emplace(image_);

@@ -11,6 +11,7 @@
 #include "kernels/height_field.h"
 #include "rows/blur.h"
 #include "rows/border.h"
+#include "rows/height_bytes.h"
 #include "stream/source_stage.h"
 #include "stream/terrain_rows.h"
 
@@ -108,6 +109,7 @@ public:
         return {};
     }
     [[nodiscard]] Result<void> check() const override {
+        if (auto exchanged = exchanged_bytes(heights_.counts, heights_.source.mixture)) return exchanged->of(input_);
         if (first_row_ < 0) return {};
         return invalid_heights(heights_.counts.invalid, first_column_, first_row_, extent(), heights_.options)
             .of(input_);

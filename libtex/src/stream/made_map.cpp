@@ -145,7 +145,7 @@ public:
     void report(StepsReport& report) const override {
         report.strength = strength_;
         report.heights = report_of(heights_->counts, heights_->deband, heights_->stored);
-        report.heights.remark = heights_->remark;
+        report.heights.remark = remark_with_counts(*heights_, heights_->remark, heights_->counts);
     }
 
 private:

@@ -71,20 +71,44 @@ Result<void> look_at_others(const Texture& texture, const SourceOptions& options
     return {};
 }
 
-Result<Source> unpack_source(Texture texture, const SourceOptions& options, bool base_only,
-                             const Execution& execution) {
+// Looks at the base level for how z is stored. Errors: as settle_blue().
+Result<void> look_at_blue(const Texture& texture, const Swizzle& swizzle, SourceOptions& options) {
+    const int channels = format_info(texture.format).channels;
+    const Result<Sources> sources = sources_of(swizzle, (1u << channels) - 1);
+    if (!sources) return sources.error();
+    const Level& base = texture.levels.front();
+    const int width = base.extent.width, height = base.extent.height, together = strip_rows_of(texture.format);
+    Plane<float> strip({width, together * channels});
+    ChannelRows rows;
+    for (int c = 0; c < channels; ++c) rows.channel[c] = strip.row(c * together);
+    BlueEvidence blue;
+    for (int j = 0; j < height && !blue.is_certain(); ++j) {
+        if (j % together == 0) decode_strip(texture.format, base, j / together, rows, strip.stride());
+        const float* row[4] = {};
+        for (int c = 0; c < channels; ++c) row[c] = rows.channel[c] + j % together * strip.stride();
+        blue.add_row(row, width);
+    }
+    return settle_blue(blue, *sources, options);
+}
+
+Result<Source> unpack_source(Texture texture, SourceOptions options, bool base_only, const Execution& execution) {
     if (base_only) texture.levels.resize(1);
     if (const Result<void> fit = check_channels(texture); !fit) return fit.error();
-    const Result<Swizzle> swizzle = find_swizzle(texture, options, execution);
-    if (!swizzle) return swizzle.error();
+    Result<FoundSwizzle> found = find_swizzle(texture, options, execution);
+    if (!found) return found.error();
+    if (leaves_blue_open(texture, options)) {
+        if (const Result<void> settled = look_at_blue(texture, found->swizzle, options); !settled)
+            return settled.error();
+        found->z01 = options.unpack.range == ValueRange::z01;
+    }
     std::optional<Image> filled;
     if (options.fill_background) {
-        Result<Image> image = decode_filled(texture, *swizzle, options, execution);
+        Result<Image> image = decode_filled(texture, found->swizzle, options, execution);
         if (!image) return image.error();
         filled = std::move(*image);
     }
     Source source;
-    source.info = source_info(texture, *swizzle, options);
+    source.info = source_info(texture, *found, options);
     UnpackOptions unpacking = unpack_options(source.info, options);
     if (options.drop_others) unpacking.others = {};
     if (options.measure_y) unpacking.y_axis = YAxis::up;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "color/color.h"
@@ -26,10 +27,11 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
         heights.linear = std::move(*linear);
     }
     if (auto valid = validate(options.heights); !valid) return valid.error();
-    const PictureFacts facts{rows.names(), rows.sample(), rows.bits(),   rows.has_numbers(),
-                             rows.scale(), rows.offset(), rows.no_data()};
+    const PictureFacts facts{rows.names(), rows.sample(), rows.bits(),    rows.has_numbers(),
+                             rows.scale(), rows.offset(), rows.no_data(), rows.is_masked()};
     heights.stored = rows.has_numbers();
     heights.remark = rows.remark();
+    heights.assumes_no_data = rows.is_no_data_assumed() && !options.heights.no_data;
     heights.stated = rows.strength();
     Result<HeightSource> source = find_height_source(facts, options.heights);
     if (!source) return source.error();
@@ -75,6 +77,7 @@ Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, co
     heights.window = (*rows)->window();
     heights.stored = (*rows)->heights().stored;
     heights.remark = (*rows)->heights().remark;
+    heights.assumes_no_data = (*rows)->heights().assumes_no_data;
     heights.options = options.heights;
     heights.options.wrap_x = heights.window->wrap_x;
     heights.options.wrap_y = heights.window->wrap_y;
@@ -98,6 +101,14 @@ Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, con
 HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated) {
     const Strength strength = options.strength ? options.strength(extent) : stated.value_or(Strength());
     return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
+}
+
+std::string remark_with_counts(const Heights& heights, std::string remark, const HeightCounts& counts) {
+    if (!heights.assumes_no_data || counts.invalid == 0) return remark;
+    if (!remark.empty()) remark += "; ";
+    return remark + std::to_string(counts.invalid) +
+           (counts.invalid == 1 ? " height is -9999 and was" : " heights are -9999 and were") +
+           " taken as missing, although the file names no no-data value";
 }
 
 Result<Heights> open_height_rows(InputFile& file, const BakeFileOptions& options) {

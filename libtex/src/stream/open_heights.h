@@ -38,6 +38,7 @@ struct Heights {
     HeightCounts counts;  // found so far
     DebandReport deband;
     bool stored = false;                  // as Image::stored
+    bool assumes_no_data = false;         // as RowSource::is_no_data_assumed(), unless the options name a value
     std::string remark;                   // as Image::remark
     std::optional<Image> last;            // the last rows, if they are needed first
     std::optional<Strength> stated;       // the strength that the file states
@@ -55,6 +56,9 @@ Result<Heights> open_height_rows(InputFile& file, const BakeFileOptions& options
 // std::bad_alloc.
 Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOptions& options, const Gradient& gradient,
                              const Execution& execution);
+
+// `remark`, and what to say about missing heights once all of them have been counted.
+std::string remark_with_counts(const Heights& heights, std::string remark, const HeightCounts& counts);
 
 // The strength and the borders of a height field of this extent, whose file may state a strength.
 HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated);

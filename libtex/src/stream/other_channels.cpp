@@ -18,7 +18,8 @@ constexpr float kVaries = 1.5f / 255.0f;
 
 OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options)
     : sources_(sources), is_floating_(format_info(head.format).sample == SampleKind::floating),
-      judges_z_(!options.drop_others && !options.unpack.others.length && sources.z >= 0 && !is_floating_),
+      judges_z_(!options.drop_others && !options.unpack.others.length && sources.z >= 0 && !is_floating_ &&
+                options.unpack.range != ValueRange::z01),
       is_unsigned_(format_info(head.format).sample == SampleKind::unorm), z_step_(z_step(extent.height)),
       lengths_(!options.drop_others && options.unpack.others.length && sources.z >= 0) {
     if (options.drop_others) return;

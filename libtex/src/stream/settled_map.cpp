@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "checks/channel_order.h"
 #include "rows/swizzle_evidence.h"
 #include "stream/measured_y.h"
 #include "stream/source_layout.h"
@@ -37,6 +38,37 @@ Result<Swizzle> SettledMap::find_layout() {
     return guessed_swizzle(evidence.layout(), options_);
 }
 
+// The order of x and y that the texels show.
+Result<Swizzle> SettledMap::find_order() {
+    ChannelOrder order(map_->extent(0));
+    int row = 0;
+    const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
+        order.add_row(row++, channels[0], channels[1]);
+        return true;
+    });
+    if (!seen) return seen.error();
+    if (Result<void> again = map_->open(); !again) return again.error();
+    const std::optional<Swizzle> shown = order.shown();
+    order_assumed_ = !shown;
+    return shown.value_or(map_->head().swizzle);
+}
+
+// Whether z is stored in the usual way, if it is stored, and whether x is.
+Result<void> SettledMap::look_at_blue() {
+    is_blue_seen_ = true;
+    BlueEvidence blue;
+    const int width = map_->extent(0).width;
+    const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
+        blue.add_row(channels, width);
+        return !blue.is_certain();
+    });
+    if (!seen) return seen.error();
+    if (Result<void> again = map_->open(); !again) return again.error();
+    if (Result<void> settled = settle_blue(blue, sources_, options_); !settled) return settled;
+    is_z01_ = options_.unpack.range == ValueRange::z01;
+    return {};
+}
+
 // Whether floats, of which the file does not say it, are unsigned: one negative value shows that they are not.
 Result<bool> SettledMap::find_range() {
     RangeEvidence range;
@@ -57,21 +89,25 @@ Result<void> SettledMap::settle() {
     if (!swizzle_) swizzle_ = map_->found_swizzle();
     if (!swizzle_) swizzle_ = known_swizzle(head, options_);
     if (!swizzle_) {
-        const Result<Swizzle> found = find_layout();
+        const Result<Swizzle> found = head.order_open ? find_order() : find_layout();
         if (!found) return found.error();
         swizzle_ = *found;
     }
     const FormatInfo format = format_info(head.format);
+    const bool leaves_open = leaves_blue_open(head, options_) && !map_->has_y_up();
     const Result<Sources> sources = sources_of(*swizzle_, (1u << format.channels) - 1);
     if (!sources) return map_->after_all_rows(sources.error().of(map_->path()));
     sources_ = *sources;
+    if (leaves_open && !is_blue_seen_) {
+        if (Result<void> settled = look_at_blue(); !settled) return settled;
+    }
     if (!is_unsigned_) is_unsigned_ = is_unsigned(format.sample, range_of(head.normal_encoding, options_.unpack));
     if (!is_unsigned_) {
         const Result<bool> found = find_range();
         if (!found) return found.error();
         is_unsigned_ = *found;
     }
-    info_ = source_info(map_->head(), *swizzle_, options_);
+    info_ = source_info(map_->head(), {*swizzle_, order_assumed_, is_z01_}, options_);
     YAxis y = info_.y_axis;
     if (map_->has_y_up()) y = info_.y_axis == map_->head().y_axis ? YAxis::up : YAxis::down;
     rule_ = rule_of(unpack_options(info_, options_), format.sample, format.bits, y);

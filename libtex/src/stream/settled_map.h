@@ -50,6 +50,8 @@ public:
 private:
     Result<void> settle();
     Result<Swizzle> find_layout();
+    Result<Swizzle> find_order();
+    Result<void> look_at_blue();
     Result<bool> find_range();
     Result<void> measure_y(const Execution& execution);
 
@@ -57,6 +59,8 @@ private:
     SourceOptions options_;  // y is no longer to be measured after open()
     std::unique_ptr<MapSource> filled_;
     std::optional<Swizzle> swizzle_;
+    bool order_assumed_ = false;
+    bool is_blue_seen_ = false, is_z01_ = false;
     std::optional<bool> is_unsigned_;
     Sources sources_;
     UnpackRule rule_;

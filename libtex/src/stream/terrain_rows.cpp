@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "rows/border.h"
+#include "rows/height_bytes.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -37,6 +38,7 @@ Result<std::unique_ptr<TerrainRows>> TerrainRows::open(InputFile& file, const Ba
     rows->center_ = std::move(*center);
     if (const Result<void> measured = rows->measure(reach); !measured) return measured.error();
     rows->center_remark_ = rows->center_->heights().remark;
+    rows->center_source_ = rows->center_->heights().source;
     rows->center_options_ = rows->center_->heights().options;
     const TerrainWindow& window = rows->window_;
     rows->describe(window.extent, {"Y"}, static_cast<std::size_t>(window.extent.width) * sizeof(float));
@@ -190,6 +192,7 @@ std::string TerrainRows::remark() const {
 }
 
 Result<void> TerrainRows::finish() {
+    if (auto exchanged = exchanged_bytes(counts_, center_source_.mixture)) return exchanged->of(file_.path());
     if (options_.heights.fill_invalid) return {};
     if (counts_.invalid > 0)
         return invalid_heights(counts_.invalid, first_invalid_[0], first_invalid_[1], window_.tile, center_options_)

@@ -62,7 +62,8 @@ private:
     int shared_ = 0;  // rows and columns that neighbours have in common
     std::vector<float> row_, side_;
     HeightCounts counts_;
-    int first_invalid_[2] = {};     // column, row; of the tile
+    int first_invalid_[2] = {};  // column, row; of the tile
+    HeightSource center_source_;
     HeightOptions center_options_;  // with the no-data value of the tile
     std::string center_remark_;
     std::int64_t disagreeing_ = 0;   // heights of shared columns

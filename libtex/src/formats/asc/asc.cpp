@@ -103,7 +103,7 @@ public:
         describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float));
         describe_samples(SampleKind::floating, 32);
         describe_stored({.kind = 3, .bits = 32, .has_place = 1});
-        describe_no_data(float_of(header[kNoDataValue].value_or(kUsualNoData)));
+        describe_no_data(float_of(header[kNoDataValue].value_or(kUsualNoData)), !header[kNoDataValue].has_value());
         describe_remark(cell_remark(header));
     }
 

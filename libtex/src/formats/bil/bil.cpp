@@ -50,7 +50,10 @@ Result<std::unique_ptr<RowSource>> open_bil(InputFile& file, const ReadOptions& 
             return Error{ErrorCode::bad_data, file.path(),
                          std::to_string(*file.size()) + " bytes, but its header wants " + std::to_string(place->end())};
         }
-        if (left > 0) place->remark = std::to_string(left) + " bytes after the last row were not read";
+        if (left > 0) {
+            place->remark +=
+                (place->remark.empty() ? "" : "; ") + std::to_string(left) + " bytes after the last row were not read";
+        }
         return open_raw_rows(file, std::move(*place));
     });
 }

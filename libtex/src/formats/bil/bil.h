@@ -21,8 +21,9 @@ bool is_bil(const InputFile& file, const ReadOptions& options);
 // Opens such a file, which must outlive the rows; several threads may decode at once. The header has the same name with
 // .hdr or .HDR. It holds a word and a value in each line, in any order and case: nrows and ncols, which must be there;
 // nbands (1), nbits (8, 16, 32; by default 8, in .flt 32), pixeltype (signedint, unsignedint, float), byteorder (I or
-// LSBFIRST, the default; M or MSBFIRST), skipbytes, bandrowbytes, totalrowbytes, nodata or nodata_value. Other words
-// change nothing. Integers without a pixeltype are signed if the no-data value is negative, as SRTM's are.
+// LSBFIRST; M or MSBFIRST, the default of GDAL, which a remark mentions), skipbytes, bandrowbytes, totalrowbytes,
+// nodata or nodata_value. Other words change nothing. Integers without a pixeltype are signed if the no-data value is
+// negative, as SRTM's are.
 //
 // Errors: io (no header), bad_data (a value that makes no sense; a file that is shorter than its header says; the
 // reason names the file that is wrong), unsupported (several bands, other depths, a header of ENVI, too large),

@@ -76,10 +76,11 @@ Result<std::int64_t> count_in(const BilWords& words, BilKey key, std::int64_t le
     return static_cast<std::int64_t>(*value);
 }
 
+// Without the word, the high byte comes first, as GDAL has it (frmts/raw/ehdrdataset.cpp).
 Result<bool> is_big_endian(const BilWords& words) {
     const std::string& order = words[kBilByteOrder];
-    if (order.empty() || order == "i" || order == "lsbfirst" || order == "intel") return false;
-    if (order == "m" || order == "msbfirst" || order == "motorola") return true;
+    if (order == "i" || order == "lsbfirst" || order == "intel") return false;
+    if (order.empty() || order == "m" || order == "msbfirst" || order == "motorola") return true;
     return words.wrong(kBilByteOrder);
 }
 
@@ -138,6 +139,10 @@ Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std:
     RawTexels place{.extent = *extent, .samples = *samples, .first = *skip, .has_place = true};
     place.pitch = static_cast<std::size_t>(*pitch);
     if (no_data) place.no_data = float_of(*no_data);
+    if (words[kBilByteOrder].empty() && samples->bits > 8)
+        place.remark =
+            "its header has no byteorder, so the high byte is read first; \"byteorder I\" there means the low "
+            "byte first";
     return place;
 }
 

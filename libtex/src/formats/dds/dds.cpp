@@ -33,6 +33,10 @@ constexpr std::size_t kReservedWords = 11;
 constexpr std::size_t kMarkWord = 3;
 constexpr std::string_view kMarkTag = "LTEX";
 constexpr std::size_t kMarkBytes = 12;
+// The signatures of writers that store x first in ATI2, in the reserved words 0 and 1, and 9.
+constexpr std::string_view kGimp = "GIMP-DDS";
+constexpr std::string_view kNvtt = "NVTT";
+constexpr std::size_t kNvttWord = 9;
 static_assert(kMarkBytes >= kLongestNormalMark);
 
 // DDS_HEADER::dwFlags, dwCaps and dwCaps2 (ddraw.h).
@@ -68,7 +72,7 @@ bool is_dxt5nm(const Swizzle& swizzle) {
 std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
     DdsPixelFormat legacy = codes_of(widened(head.format)).legacy;
     if (legacy.flags == 0) return std::nullopt;
-    // ATI2 without this code means that y is first.
+    // ATI2 without this code leaves open whether x or y is first. The mark of libtex says it.
     if (legacy.four_cc == fourcc("ATI2") && head.swizzle[0] != Component::y) legacy.bit_count = fourcc("A2XY");
     return legacy;
 }
@@ -104,6 +108,7 @@ struct Header {
     DdsPixelFormat pixel_format;
     std::uint32_t caps2 = 0;
     std::string mark;                              // of libtex, see normal_mark.h
+    bool writes_x_first = false;                   // the writer, as its signature says
     std::size_t end = kMagicBytes + kHeaderBytes;  // where the levels begin
     bool has_dx10 = false;
     std::uint32_t dxgi = 0;
@@ -126,6 +131,12 @@ std::string mark_of(const std::byte* reserved) {
     const char* const text = tag + kMarkTag.size();
     const std::string mark(text, strnlen(text, kMarkBytes));
     return mark.empty() ? "?" : mark;
+}
+
+bool is_by_writer_of_x(const std::byte* reserved) {
+    const auto* const text = reinterpret_cast<const char*>(reserved);
+    return std::string_view(text, kGimp.size()) == kGimp ||
+           std::string_view(text + kNvttWord * sizeof(std::uint32_t), kNvtt.size()) == kNvtt;
 }
 
 Result<Header> parse_header(const std::byte* data, std::size_t size, const std::string& name) {
@@ -152,6 +163,7 @@ Result<Header> parse_header(const std::byte* data, std::size_t size, const std::
     header.depth = field(5);
     header.mip_map_count = field(6);
     header.mark = mark_of(data + kMagicBytes + kReservedAt);
+    header.writes_x_first = is_by_writer_of_x(data + kMagicBytes + kReservedAt);
     header.pixel_format = {field(19), field(20), field(21), {field(22), field(23), field(24), field(25)}};
     header.caps2 = field(27);
     if (header.pixel_format.four_cc == fourcc("DX10") && (header.pixel_format.flags & kDdpfFourCc) != 0) {
@@ -285,6 +297,7 @@ Result<StoredTexture> parse_dds(const FetchBytes& fetch, std::size_t size, const
     texture.format = texels->format;
     texture.swizzle = texels->swizzle;
     texture.swizzle_known = texels->swizzle_known;
+    texture.order_open = texels->order_open && !header->writes_x_first;
     texture.srgb = texels->srgb;
     texture.remarks = std::move(header->remarks);
     texture.remarks.insert(texture.remarks.end(), texels->remarks.begin(), texels->remarks.end());

@@ -38,8 +38,8 @@ constexpr FourCcRow kFourCcs[] = {
     {fourcc("ATI1"), Format::bc4_unorm, false, {}},
     {fourcc("BC4U"), Format::bc4_unorm, false, {}},
     {fourcc("BC4S"), Format::bc4_snorm, false, {}},
-    // 3Dc (ATI 2005) holds y first. This is not certain: other tools wrote x first under the same name.
-    {fourcc("ATI2"), Format::bc5_unorm, false, kSwizzleYx},
+    // 3Dc (ATI 2005) holds y first; most tools wrote x first under the same name.
+    {fourcc("ATI2"), Format::bc5_unorm, false, kSwizzleXy},
     {fourcc("A2XY"), Format::bc5_unorm, true, kSwizzleXy},
     {fourcc("BC5U"), Format::bc5_unorm, false, {}},
     {fourcc("BC5S"), Format::bc5_snorm, false, {}},
@@ -156,6 +156,7 @@ std::optional<DdsTexels> texels_of_four_cc(const DdsPixelFormat& pixel_format) {
             texels.swizzle = {kNone, kY, kNone, kX};
             texels.swizzle_known = true;
         }
+        texels.order_open = code == fourcc("ATI2") && !texels.swizzle_known;
         return texels;
     }
     if (!in_place) return std::nullopt;

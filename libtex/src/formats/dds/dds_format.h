@@ -39,6 +39,7 @@ struct DdsTexels {
     std::optional<FieldLayout> fields;  // to be converted to `format`; none: the bytes are in `format`
     Swizzle swizzle = kSwizzleXyz;
     bool swizzle_known = false;
+    bool order_open = false;  // as in Texture
     bool srgb = false;
     std::vector<std::string> remarks;
 };

@@ -50,7 +50,7 @@ inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
 inline constexpr int kReaderArguments = 7;  // with the name of the program
 
-inline constexpr std::uint32_t kReaderMagic = 0x35786574;  // "tex5": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x36786574;  // "tex6": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
@@ -78,6 +78,13 @@ inline constexpr std::size_t reader_type_bytes(ReaderType type) {
     return 0;
 }
 
+// Where a picture says which texels hold no data.
+enum class ReaderMask : std::uint32_t {
+    none,
+    own,    // the last channel, which is no channel of the picture: all of its bits are 0 where there are no data
+    alpha,  // the last channel, which is alpha, is 0 there
+};
+
 struct ReaderHeader {
     std::uint32_t magic = kReaderMagic;
     ReaderState state = ReaderState::working;
@@ -96,6 +103,10 @@ struct ReaderHeader {
     double no_data = 0;               // samples of this value hold no data, as the file says
     std::uint32_t orientation = 1;    // 1 to 8, as in TIFF and EXIF; the rows have been turned accordingly
     std::uint32_t is_multiplied = 0;  // colours by alpha, as the file says
+    ReaderMask mask = ReaderMask::none;
+    std::uint32_t has_alpha = 0;  // the last channel is alpha, as the file says
+    // The strips or tiles of the file, and how many of them were never written. Their texels are no_data, or else 0.
+    std::uint32_t chunks = 0, absent_chunks = 0, has_tiles = 0;
     StoredSamples stored;
     char reason[1024] = {};
     char description[1024] = {};  // of the picture: text, cut off at this length

@@ -119,10 +119,19 @@ float to_float(T code, const Scale& scale) {
     }
 }
 
+// Texels whose last channel, of all that the process hands over, is 0.
 template <class T>
-void store_row(const std::byte* row, const Scale& scale, Image& image, int j) {
-    const std::size_t channels = image.planes.size();
-    for (std::size_t c = 0; c < channels; ++c) {
+void mask_row(const std::byte* row, std::size_t channels, std::size_t masked, Image& image, int j) {
+    const std::byte* mask = row + (channels - 1) * sizeof(T);
+    for (int i = 0; i < image.extent().width; ++i, mask += channels * sizeof(T)) {
+        if (!std::all_of(mask, mask + sizeof(T), [](std::byte byte) { return byte == std::byte{0}; })) continue;
+        for (std::size_t c = 0; c < masked; ++c) image.planes[c].row(j)[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+}
+
+template <class T>
+void store_row(const std::byte* row, std::size_t channels, const Scale& scale, Image& image, int j) {
+    for (std::size_t c = 0; c < image.planes.size(); ++c) {
         float* to = image.planes[c].row(j);
         const std::byte* from = row + c * sizeof(T);
         for (int i = 0; i < image.extent().width; ++i, from += channels * sizeof(T)) {
@@ -152,7 +161,8 @@ auto with_type(ReaderType type, const Visit& visit) {
 // The names that the decoder gives. Names that are not plain text are replaced.
 std::vector<std::string> plane_names(const ReaderHeader& header) {
     std::vector<std::string> names;
-    for (int c = 0; c < header.channels; ++c) {
+    const int channels = header.channels - (header.mask == ReaderMask::own ? 1 : 0);
+    for (int c = 0; c < channels; ++c) {
         const char* text = header.names[c];
         std::string name(text, strnlen(text, sizeof header.names[c]));
         const bool sound = !name.empty() && std::all_of(name.begin(), name.end(), [](char ch) {
@@ -168,7 +178,19 @@ std::vector<std::string> plane_names(const ReaderHeader& header) {
 // Checks every field of the header that later code relies on.
 bool plausible(const ReaderHeader& header) {
     return header.channels >= 1 && header.channels <= kMaxReaderChannels && header.type <= ReaderType::f32 &&
-           header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type) && header.orientation <= 8;
+           header.bits >= 1 && header.bits <= 8 * reader_type_bytes(header.type) && header.orientation <= 8 &&
+           header.mask <= ReaderMask::alpha && (header.mask == ReaderMask::none || header.channels >= 2) &&
+           header.absent_chunks <= header.chunks;
+}
+
+// What parts of the file that were never written mean, as a sentence.
+std::string absent_text(const ReaderHeader& header, bool has_no_data) {
+    const char* const kind = header.has_tiles != 0 ? " tile" : " strip";
+    const std::string count = std::to_string(header.absent_chunks) + " of " + std::to_string(header.chunks) + kind +
+                              (header.chunks == 1 ? "" : "s") + (header.absent_chunks == 1 ? " was" : " were") +
+                              " never written; ";
+    return count + (has_no_data ? "the texels there have the no-data value of the file"
+                                : "the texels there are read as 0, because the file has no no-data value");
 }
 
 class ReaderRows final : public RowSource {
@@ -188,6 +210,7 @@ public:
         return true;
     }
     void store(const std::byte* rows, int first, int end, Image& image) const override;
+    void keep_masked() override { keeps_masked_ = true; }
 
 private:
     Result<void> start(const ReadOptions& options);
@@ -203,6 +226,7 @@ private:
     Descriptor result_;
     std::optional<ReaderProcess> process_;
     ReaderHeader header_;  // as it was when the first rows arrived
+    bool keeps_masked_ = false;
     Scale scale_;
 };
 
@@ -246,6 +270,8 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     describe_stored(header_.stored);
     if (header_.is_multiplied != 0) describe_multiplied();
     if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation));
+    if (header_.absent_chunks > 0) describe_absent(absent_text(header_, no_data().has_value()));
+    if (header_.mask != ReaderMask::none) describe_masked();
     return {};
 }
 
@@ -315,8 +341,13 @@ Result<void> ReaderRows::finish() {
 }
 
 void ReaderRows::store(const std::byte* rows, int first, int end, Image& image) const {
+    const auto channels = static_cast<std::size_t>(header_.channels);
+    const std::size_t masked = header_.mask == ReaderMask::none || keeps_masked_ ? 0 : channels - 1;
     with_type(header_.type, [&](auto zero) {
-        for (int j = first; j < end; ++j, rows += row_bytes()) store_row<decltype(zero)>(rows, scale_, image, j);
+        for (int j = first; j < end; ++j, rows += row_bytes()) {
+            store_row<decltype(zero)>(rows, channels, scale_, image, j);
+            if (masked > 0) mask_row<decltype(zero)>(rows, channels, masked, image, j);
+        }
     });
 }
 
