@@ -79,10 +79,14 @@ const std::vector<Damage>& damages() {
         {"turned by 90 degrees", "N308", quarter_turn},
         {"JPEG of quality 50", "N304", [](const Codes& c) { return jpeg(c, 50); }},
         {"x negated", "N401",
-         [](const Codes& c) { return each(c, [](unsigned char* t) { t[0] = static_cast<unsigned char>(255 - t[0]); }); }},
+         [](const Codes& c) {
+             return each(c, [](unsigned char* t) { t[0] = static_cast<unsigned char>(255 - t[0]); });
+         }},
         {"x and y exchanged", "N308", [](const Codes& c) { return exchange(c, 0, 1); }},
         {"blue inverted", "N213 N220",
-         [](const Codes& c) { return each(c, [](unsigned char* t) { t[2] = static_cast<unsigned char>(255 - t[2]); }); }},
+         [](const Codes& c) {
+             return each(c, [](unsigned char* t) { t[2] = static_cast<unsigned char>(255 - t[2]); });
+         }},
         {"premultiplied", "N303", [](const Codes& c) { return with_alpha(c, true); }},
     };
     return kDamages;

@@ -50,8 +50,8 @@ private:
 // The texels whose alpha is 0, if alpha holds no component. Nothing if there are none, or hardly others.
 std::optional<Background> find_transparent(const Stored& stored);
 
-// Finds the value of the background if it covers kLeastBackground or more, beside the transparent texels, and adds it to
-// them. It looks at every texel twice; call it only if there are vectors that are not of unit length, or z below 0.
+// Finds the value of the background if it covers kLeastBackground or more, beside the transparent texels, and adds it
+// to them. It looks at every texel twice; call it only if there are vectors that are not of unit length, or z below 0.
 // Errors: out_of_memory, cancelled.
 Result<std::optional<Background>> find_background(const Stored& stored, const Execution& execution,
                                                   std::optional<Background> transparent = {});

@@ -29,7 +29,8 @@ bool same_everywhere(const TexelCounts& counts, int channels) {
 // Finds the transparent texels and the background, and counts without them.
 Result<void> count_seen(CheckContext& context) {
     const auto count = [&]() -> Result<void> {
-        auto counts = count_texels(context.stored, context.execution, context.background ? &*context.background : nullptr);
+        auto counts =
+            count_texels(context.stored, context.execution, context.background ? &*context.background : nullptr);
         if (!counts) return counts.error();
         context.counts = *counts;
         return {};
@@ -59,14 +60,22 @@ Result<void> decide_kind(CheckContext& context) {
     const auto with = [&](const Background* without) -> Result<Kind> {
         context.kind_measure = measure_kind(stored, without);
         Kind kind = kind_of(context.kind_measure, stored, false);
-        if (kind != Kind::no_map || kind_of(context.kind_measure, stored, true) == Kind::no_map) return kind;
+        if (kind != Kind::no_map) return kind;
+        const Kind of_surface = kind_of(context.kind_measure, stored, true);
+        const Extent extent = stored.extent();
+        const bool is_small = std::min(extent.width, extent.height) < kLeastSampledSide;
+        if (of_surface == Kind::no_map || (is_small && !stored.has_z())) return of_surface;
         Stored flat = stored;
         for (Component& held : flat.swizzle) held = held == Component::z ? Component::other : held;
         const auto curl = measure_curl(flat, context.execution);
         if (!curl) return curl.error();
-        return clear_y(*curl) ? kind_of(context.kind_measure, stored, true) : kind;
+        return clear_y(*curl) ? of_surface : kind;
     };
-    auto kind = with(context.background ? &*context.background : nullptr);
+    // A colour that covers nearly all of a picture is the picture.
+    constexpr double kMostMasked = 0.9;
+    const bool leaves_enough = context.background && static_cast<double>(context.background->masked) <
+                                                         kMostMasked * static_cast<double>(stored.extent().texels());
+    auto kind = with(leaves_enough ? &*context.background : nullptr);
     if (!kind) return kind.error();
     if (*kind == Kind::no_map && context.background && context.background->texels > 0) {
         // What was taken for background may be the flat parts of a map that went through the sRGB curve.

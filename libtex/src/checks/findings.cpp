@@ -38,7 +38,9 @@ Finding& Findings::add(std::string_view id, std::string message) {
 }
 
 void Findings::soften(Finding& finding, Severity severity) const {
-    const auto names_it = [&](const auto& row) { return row.first == finding.rule->id || row.first == finding.rule->name; };
+    const auto names_it = [&](const auto& row) {
+        return row.first == finding.rule->id || row.first == finding.rule->name;
+    };
     if (std::none_of(options_.severity.begin(), options_.severity.end(), names_it)) finding.severity = severity;
 }
 

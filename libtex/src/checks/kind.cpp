@@ -9,6 +9,7 @@
 
 #include "checks/centre.h"
 #include "checks/findings.h"
+#include "checks/texel_counts.h"
 #include "checks/thresholds.h"
 
 namespace tex::inline v1 {
@@ -43,7 +44,8 @@ struct Curves {
 
 bool is_unit(float x, float y, float z) {
     constexpr float kTolerance = kKindUnitTolerance / 100.0f;
-    constexpr float kLeast = (1.0f - kTolerance) * (1.0f - kTolerance), kMost = (1.0f + kTolerance) * (1.0f + kTolerance);
+    constexpr float kLeast = (1.0f - kTolerance) * (1.0f - kTolerance),
+                    kMost = (1.0f + kTolerance) * (1.0f + kTolerance);
     const float square = x * x + y * y + z * z;
     return square >= kLeast && square <= kMost;
 }
@@ -90,7 +92,9 @@ public:
         const float z = at(curve.plain, 2);
         z_.add(z);
         behind_ += z < kKindBehindZ ? 1 : 0;
+        null_ += across + z * z < kNullLength * kNullLength ? 1 : 0;
         if (std::abs(x) < kKindUpright && std::abs(y) < kKindUpright) {
+            ++level_;
             upright_ += z > kKindUprightZ ? 1 : 0;
             inverted_ += z < -kKindUprightZ ? 1 : 0;
         }
@@ -120,7 +124,8 @@ public:
 
     [[nodiscard]] KindMeasure measure() const {
         KindMeasure m;
-        const double n = std::max(1.0, static_cast<double>(count_)), inside = std::max(1.0, static_cast<double>(inside_));
+        const double n = std::max(1.0, static_cast<double>(count_)),
+                     inside = std::max(1.0, static_cast<double>(inside_));
         const auto share = [n](std::int64_t count) { return static_cast<double>(count) / n; };
         m.texels = count_;
         const Curves& curve = curves();
@@ -147,9 +152,17 @@ public:
         m.spread = x_.variance(n) + y_.variance(n) + z_.variance(n);
         m.grey = share(grey_);
         m.beyond = share(beyond_);
+        m.level = share(level_);
+        const auto used = [](std::int64_t count) { return count > 0; };
+        const auto first = std::find_if(bins_[2].begin(), bins_[2].end(), used);
+        const auto last = std::find_if(bins_[2].rbegin(), bins_[2].rend(), used);
+        if (first != bins_[2].end())
+            m.z_range = static_cast<double>((bins_[2].rend() - last) - 1 - (first - bins_[2].begin())) / 255.0;
         m.upright = share(upright_);
         m.inverted = share(inverted_);
         m.behind = share(behind_);
+        m.null = share(null_);
+        m.alpha_varies = std::count_if(alpha_bins_.begin(), alpha_bins_.end(), used) > 1;
         return m;
     }
 
@@ -162,7 +175,8 @@ private:
         unit_[static_cast<std::size_t>(reading)] += is_unit(x, y, z) ? 1 : 0;
     }
 
-    std::int64_t count_ = 0, inside_ = 0, beyond_ = 0, grey_ = 0, behind_ = 0, upright_ = 0, inverted_ = 0;
+    std::int64_t count_ = 0, inside_ = 0, beyond_ = 0, grey_ = 0, behind_ = 0, null_ = 0, level_ = 0, upright_ = 0,
+                 inverted_ = 0;
     std::array<std::int64_t, kReadings> unit_{};
     std::array<CodeCounts, 3> bins_{}, straight_{};
     CodeCounts alpha_bins_{};
@@ -172,6 +186,11 @@ private:
 
 bool is_flat(const KindMeasure& m) { return std::max(m.deviation_x, m.deviation_y) < thresholds::kNoiseOnly; }
 
+// The correlation of x and y, if both vary by more than noise: 0 in maps that slope along one axis alone.
+double relation_of(const KindMeasure& m) {
+    return std::min(m.deviation_x, m.deviation_y) < thresholds::kNoiseOnly ? 0.0 : m.correlation;
+}
+
 bool are_vectors(const KindMeasure& m) {
     const KindMeasure::Vectors& v = m.as(Reading::as_stored);
     if (v.unit < thresholds::kUnitShare) return false;
@@ -179,12 +198,14 @@ bool are_vectors(const KindMeasure& m) {
     // One of the three components is near 1 and the others about 0; which one is another rule's business.
     std::array<double, 3> sides{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
     std::sort(sides.begin(), sides.end());
-    if (sides[1] <= thresholds::kCentred && (std::abs(m.correlation) <= thresholds::kColorRelated || follows || m.z_deviation < thresholds::kZImplied || is_flat(m)))
+    if (sides[1] <= thresholds::kCentred && (std::abs(m.correlation) <= thresholds::kColorRelated || follows ||
+                                             m.z_deviation < thresholds::kZImplied || is_flat(m)))
         return true;
-    if (follows && m.z_deviation > 2.0 * thresholds::kZImplied && m.correlation < thresholds::kColorRelated) return true;  // leaning
+    if (follows && m.z_deviation > 2.0 * thresholds::kZImplied && m.correlation < thresholds::kColorRelated)
+        return true;  // leaning
     // Leaning, with other data in blue: colours of one bright hue have R and G that follow each other.
     if (v.z > thresholds::kUprightMedian && v.off_centre() < thresholds::kSurfaceCentred && !is_flat(m) &&
-        std::abs(m.correlation) < thresholds::kTwoRelated && m.beyond < thresholds::kMostOutside)
+        std::abs(relation_of(m)) < thresholds::kTwoRelated && m.beyond < thresholds::kMostOutside)
         return true;
     return m.spread > thresholds::kAllDirections;  // object space
 }
@@ -192,18 +213,25 @@ bool are_vectors(const KindMeasure& m) {
 bool are_damaged_vectors(const KindMeasure& m) {
     const auto restored = [&m](Reading reading) {
         const KindMeasure::Vectors& v = m.as(reading);
-        return v.unit >= thresholds::kRestoredShare && v.off_centre() <= thresholds::kRestoredCentre && v.z > thresholds::kUprightMedian;
+        return v.unit >= thresholds::kRestoredShare && v.off_centre() <= thresholds::kRestoredCentre &&
+               v.z > thresholds::kUprightMedian;
     };
-    const bool related = m.correlation > thresholds::kRestoredRelated && !is_flat(m);
-    if (restored(Reading::premultiplied) && m.as(Reading::as_stored).unit < m.as(Reading::premultiplied).unit) return true;
-    return !related && (restored(Reading::srgb_encoded) || restored(Reading::srgb_decoded) ||
-                        (restored(Reading::z_from_zero) && m.as(Reading::z_from_zero).unit > thresholds::kUnitShare));
+    const bool related = relation_of(m) > thresholds::kRestoredRelated;
+    if (restored(Reading::premultiplied) && m.as(Reading::as_stored).unit < m.as(Reading::premultiplied).unit)
+        return true;
+    const KindMeasure::Vectors& from_zero = m.as(Reading::z_from_zero);
+    const bool is_from_zero = from_zero.unit > thresholds::kUnitShare &&
+                              from_zero.off_centre() <= thresholds::kCentred && m.z_correlation > thresholds::kZFollows;
+    return !related && (restored(Reading::srgb_encoded) || restored(Reading::srgb_decoded) || is_from_zero);
 }
 
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
-    if (std::abs(m.correlation) > thresholds::kTwoRelated && !is_flat(m)) return false;
+    const bool is_level = m.level > thresholds::kLevelShare;
+    if (std::abs(relation_of(m)) > (is_level ? thresholds::kColorRelated : thresholds::kTwoRelated)) return false;
+    const double variance = m.deviation_x * m.deviation_x + m.deviation_y * m.deviation_y;
+    if (variance > thresholds::kTwoVariance && !is_surface) return false;
     return off <= thresholds::kTwoCentred || (is_surface && off <= thresholds::kSurfaceCentred);
 }
 
@@ -245,7 +273,8 @@ KindMeasure measure_kind(const Stored& stored, const Background* without) {
             const float alpha = has_alpha ? planes[3].at(i, j) : 1.0f;
             sums.add({code_of(a), code_of(b), code_of(c), code_of(alpha)}, z != nullptr, has_alpha);
             if (planes.size() >= 3)
-                sums.add_grey({code_of(planes[0].at(i, j)), code_of(planes[1].at(i, j)), code_of(planes[2].at(i, j)), 0});
+                sums.add_grey(
+                    {code_of(planes[0].at(i, j)), code_of(planes[1].at(i, j)), code_of(planes[2].at(i, j)), 0});
         }
     }
     return sums.measure();
@@ -258,7 +287,8 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (!stored.has_z()) {
         if (planes.size() < 4 || stored.channel(Component::x) != 3) return Kind::normals;
         // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures.
-        const bool has_grey = !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
+        const bool has_grey =
+            !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
         constexpr double kMostBeyondOfTwo = 0.25;
         if (m.beyond > kMostBeyondOfTwo) return Kind::no_map;
         return has_grey && !is_surface ? Kind::no_map : Kind::normals;
@@ -266,13 +296,19 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (m.grey > thresholds::kGreyTexels) return Kind::no_map;
     if (are_vectors(m) || are_damaged_vectors(m)) return Kind::normals;
     const KindMeasure::Vectors& other = m.as(Reading::y_z_x);
-    if (other.unit > thresholds::kUnitShare && other.off_centre() < thresholds::kCentred && other.z > thresholds::kUprightMedian) return Kind::x_ray;
+    if (other.unit > thresholds::kUnitShare && other.off_centre() < thresholds::kCentred &&
+        other.z > thresholds::kUprightMedian)
+        return Kind::x_ray;
     const bool has_alpha = planes.size() > 3 && !is_one(planes[3], 1.0f);
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
         std::abs(m.as(Reading::as_stored).y) < thresholds::kCentred)
         return Kind::x_lost;
     if (!are_two_components(m, is_surface)) return Kind::no_map;
-    return m.z_correlation < thresholds::kZFollows ? Kind::two_components : Kind::normals;
+    // Averaged vectors, and those whose lengths are occlusion, are short; but they keep facing outwards.
+    const bool is_faulty = m.behind > thresholds::kFewBehind || (m.null > thresholds::kFewNull && m.alpha_varies);
+    const bool is_other = m.z_correlation < thresholds::kZFollows && m.z_range > static_cast<double>(kBlockError) &&
+                          m.as(Reading::as_stored).unit < thresholds::kOtherUnit;
+    return is_other && is_faulty ? Kind::two_components : Kind::normals;
 }
 
 std::string evidence_text(const KindMeasure& m) {

@@ -53,11 +53,15 @@ bool check_surface_data(const CheckContext& context, Findings& findings) {
     return true;
 }
 
+void add_grey(Findings& findings, double share) {
+    add_share(findings, "N210", "R, G and B are equal in " + percent(share) + " of the texels", share);
+}
+
 void check_no_map(const CheckContext& context, Findings& findings) {
     const KindMeasure& measure = context.kind_measure;
     const double grey = context.counts.share(Property::grey);
     if (context.stored.has_z() && grey > kGreyEverywhere) {
-        add_share(findings, "N210", "R, G and B are equal in " + percent(grey) + " of the texels", grey);
+        add_grey(findings, grey);
     } else if (!context.stored.has_z() && measure.grey > kGreyEverywhere) {
         add_share(findings, "N210",
                   "R, G and B are equal in " + percent(measure.grey) + " of the texels, and A is no x beside them",
@@ -79,8 +83,8 @@ void check_constant(const CheckContext& context, Findings& findings) {
     finding.unit = "ratio";
 }
 
-// Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much better:
-// those of strong JPEG are a little better, too.
+// Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much
+// better: those of strong JPEG are a little better, too.
 bool holds_z_from_zero(const CheckContext& context) {
     const KindMeasure& m = context.kind_measure;
     constexpr double kUnit = 0.95, kBetter = 0.05, kMuchBetter = 0.25, kZRelated = 0.8;
@@ -101,8 +105,9 @@ void check_behind(const CheckContext& context, Findings& findings) {
         add_counted(context, findings, "N220", Property::z_behind, " point into the surface");
     } else if (from_zero) {
         add_share(findings, "N221",
-                  percent(m.as(Reading::z_from_zero).unit) + " of the vectors have about unit length if z is blue, and " +
-                      percent(v.unit) + " if it is 2 blue - 1",
+                  percent(m.as(Reading::z_from_zero).unit) +
+                      " of the vectors have about unit length if z is blue, and " + percent(v.unit) +
+                      " if it is 2 blue - 1",
                   m.as(Reading::z_from_zero).unit);
     } else if (m.texels == 0 || m.upright < kUprightShare || m.inverted > kRare * m.upright) {
         add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
@@ -125,6 +130,9 @@ void check_kind_rules(const CheckContext& context, Findings& findings) {
         case Kind::two_components: break;
     }
     if (!context.has_vectors || !context.stored.has_z()) return;
+    // Components and lengths that do not matter leave this to be told: floats of heights.
+    if (const double grey = context.counts.share(Property::grey); grey > kGreyEverywhere && !context.constant)
+        add_grey(findings, grey);
     if (context.constant)
         check_constant(context, findings);
     else

@@ -79,9 +79,9 @@ Result<bool> has_better_slopes_without_z(const CheckContext& context) {
 // Data in alpha, too, are the layout of LabPBR, and meant.
 void add_other_data(const CheckContext& context, Findings& findings) {
     const TexelCounts& counts = context.counts;
-    Finding& finding = findings.add("N219", "blue does not follow x and y as z does: " +
-                                                decimal(static_cast<double>(counts.low[kBlue]), 2) + " to " +
-                                                decimal(static_cast<double>(counts.high[kBlue]), 2));
+    Finding& finding = findings.add(
+        "N219", "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
+                    " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
     if (context.base.planes.size() > kAlpha && counts.high[kAlpha] > counts.low[kAlpha])
         findings.soften(finding, Severity::note);
 }

@@ -121,7 +121,8 @@ constexpr Rule kRules[] = {
      "world-space map.",
      "", "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
-     "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and G "
+     "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
+     "G "
      "rise and fall together, or do not centre on the middle. No other rule judges the texels.",
      "Give the slot of the normal map the picture that belongs there.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},

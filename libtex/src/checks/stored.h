@@ -18,8 +18,8 @@ struct Background;
 struct Stored {
     const Image* image = nullptr;  // R, G, B, A from decode()
     Swizzle swizzle{};
-    bool is_signed = false;  // values are components; otherwise (n + 1) / 2
-    bool in_blocks = false;  // decoded from texel blocks
+    bool is_signed = false;                   // values are components; otherwise (n + 1) / 2
+    bool in_blocks = false;                   // decoded from texel blocks
     const Background* transparent = nullptr;  // texels that have no slopes, because alpha is 0 there; or null
 
     [[nodiscard]] Extent extent() const { return image->extent(); }

@@ -26,7 +26,8 @@ void check_lengths(const CheckContext& context, Findings& findings) {
     const TexelCounts& counts = context.counts;
     if (counts[Property::not_finite].count > 0)
         add_counted(context, findings, "N204", Property::not_finite, " are NaN or infinite");
-    if (counts.share(Property::null_vector) > (context.background && context.background->texels > 0 ? kNullShareBesideGrey : kNullShare)) {
+    if (counts.share(Property::null_vector) >
+        (context.background && context.background->texels > 0 ? kNullShareBesideGrey : kNullShare)) {
         add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
     if (!context.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
