@@ -20,6 +20,7 @@
 #include <tex/tex.h>
 
 #include "broken_meshes.h"
+#include "broken_tiff.h"
 #include "reference/astc_block.h"
 #include "reference/damage.h"
 
@@ -27,37 +28,6 @@ namespace {
 
 using namespace tex;
 using namespace tex::reference;
-
-// An RGB TIFF without compression, whose orientation is 6: the top row is the right side of the picture.
-std::vector<std::byte> turned_tiff(const Codes& codes) {
-    const auto width = static_cast<std::uint32_t>(codes.extent.width),
-               height = static_cast<std::uint32_t>(codes.extent.height);
-    constexpr std::uint32_t kShort = 3, kLong = 4, kEntries = 9, kDirectory = 8;
-    constexpr std::uint32_t kBits = kDirectory + 2 + 12 * kEntries + 4, kTexels = kBits + 6;
-    const std::uint32_t entries[kEntries][4] = {{256, kLong, 1, width},   {257, kLong, 1, height},
-                                                {258, kShort, 3, kBits},  // BitsPerSample
-                                                {262, kShort, 1, 2},      // PhotometricInterpretation: RGB
-                                                {273, kLong, 1, kTexels}, {274, kShort, 1, 6},  // Orientation
-                                                {277, kShort, 1, 3},                            // SamplesPerPixel
-                                                {278, kLong, 1, height},  {279, kLong, 1, 3 * width * height}};
-    std::vector<std::byte> bytes;
-    const auto put = [&](std::uint32_t value, int count) {
-        for (int k = 0; k < count; ++k) bytes.push_back(static_cast<std::byte>(value >> (8 * k) & 0xff));
-    };
-    put(0x2a4949, 4);
-    put(kDirectory, 4);
-    put(kEntries, 2);
-    for (const auto& [tag, type, count, value] : entries) {
-        put(tag, 2);
-        put(type, 2);
-        put(count, 4);
-        put(value, 4);
-    }
-    put(0, 4);
-    for (int k = 0; k < 3; ++k) put(8, 2);
-    for (const unsigned char code : codes.values) bytes.push_back(static_cast<std::byte>(code));
-    return bytes;
-}
 
 struct Maker {
     std::string folder;
@@ -268,6 +238,25 @@ void Maker::values() {
         occluded.at(i, j, 2) = static_cast<unsigned char>(235 - 4 * std::abs(i % 28 - 14) - 4 * std::abs(j % 22 - 11));
     }
     png("N219-blue-other-data", occluded);
+    const Codes base_codes = codes();
+    Codes inverted = base_codes, from_zero = base_codes, lost = base_codes, x_ray{{128, 128}, 4, {}};
+    x_ray.values.resize(4 * 128 * 128);
+    const Codes steep = codes_of(*scale(part(128, 128), 3.0f));
+    for (int k = 0; k < 128 * 128; ++k) {
+        const int i = k % 128, j = k / 128;
+        inverted.at(i, j, 2) = static_cast<unsigned char>(255 - inverted.at(i, j, 2));
+        for (int c = 0; c < 2; ++c) from_zero.at(i, j, c) = steep.at(i, j, c);
+        from_zero.at(i, j, 2) = static_cast<unsigned char>(std::max(0, 2 * steep.at(i, j, 2) - 255));
+        lost.at(i, j, 0) = lost.at(i, j, 2) = 255;
+        x_ray.at(i, j, 0) = static_cast<unsigned char>(40 + 6 * std::abs(i % 28 - 14));
+        x_ray.at(i, j, 1) = base_codes.at(i, j, 2);
+        x_ray.at(i, j, 2) = base_codes.at(i, j, 1);
+        x_ray.at(i, j, 3) = base_codes.at(i, j, 0);
+    }
+    png("N220-blue-inverted", inverted);
+    png("N221-blue-from-zero", from_zero);
+    png("N222-x-lost", lost);
+    png("N223-x-ray-layout", x_ray);
     Codes unfilled = codes();
     for (int j = 64; j < 128; ++j) {
         for (int i = 80; i < 128; ++i) {
@@ -282,6 +271,12 @@ void Maker::damages() {
     png("N302-srgb-encoded", srgb_encode(codes()));
     png("N303-premultiplied", with_alpha(codes(), true));
     png("N304-jpeg-blocks", jpeg(codes(), 30));
+    const Codes whole_codes = codes();
+    Codes enlarged = whole_codes;  // each texel of a quarter four times
+    for (int k = 0; k < 128 * 128; ++k) {
+        for (int c = 0; c < 3; ++c) enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);
+    }
+    png("N312-scaled-up", enlarged);
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     const Codes whole = codes();
     Codes blocks = whole;  // four colours in each block of 4x4: those of its first row
@@ -375,6 +370,10 @@ void Maker::tangents() {
     put("N706", "tangent-sign-opposite", [](Tangents& all) {
         for (Float4& t : all) t.w = -t.w;
     });
+    MeshPart opposite = broken_sheet();
+    for (Float4& t : opposite.tangents) t.w = -t.w;
+    mesh("N707", opposite);
+    png("N707-sign-and-green-cancel", flip_green(codes()));
 }
 
 // A cube whose normals are smooth over its edges, with bumps that depend on the place in space alone. Green points the

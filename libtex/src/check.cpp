@@ -12,11 +12,13 @@
 #include <tex/mesh.h>
 #include <tex/pack.h>
 
+#include "checks/context.h"
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
 #include "checks/field_rules.h"
 #include "checks/file_rules.h"
 #include "checks/findings.h"
+#include "checks/kind_rules.h"
 #include "checks/mesh_fit.h"
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
@@ -26,16 +28,11 @@
 #include "checks/rules.h"
 #include "checks/sign_rules.h"
 #include "checks/value_rules.h"
-#include "formats/level_planes.h"
-#include "rows/other_rows.h"
-#include "rows/unpack_rows.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
-
-constexpr int kLeastSide = 32;  // in texels; smaller maps get no statistics
 
 // Parses `text`, which must be a whole number from 1 to kMaxExtent and nothing else.
 std::optional<int> parse_count(std::string_view text) {
@@ -76,95 +73,6 @@ Result<void> require_mips(Requirements& requirements, std::string_view value) {
     } else {
         return bad_option("mips=" + std::string(value) + ": not full, none or a number");
     }
-    return {};
-}
-
-bool same_everywhere(const TexelCounts& counts, int channels) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(channels); ++c) {
-        if (!(counts.high[c] == counts.low[c])) return false;
-    }
-    return true;
-}
-
-// True if a channel varies that holds no component and is no copy of one.
-bool has_more_data(const Stored& stored, const TexelCounts& counts) {
-    const auto& planes = stored.image->planes;
-    const auto holds_component = [&](std::size_t c) {
-        return stored.swizzle[c] == Component::x || stored.swizzle[c] == Component::y ||
-               stored.swizzle[c] == Component::z;
-    };
-    const auto equal = [&](std::size_t a, std::size_t b) {
-        for (int j = 0; j < stored.extent().height; ++j) {
-            const float* row = planes[a].row(j);
-            const auto is_near = [&](float v, float w) {
-                return std::abs(v - w) <= (stored.in_blocks ? kSameInBlocks : 0.0f);
-            };
-            if (!std::equal(row, row + stored.extent().width, planes[b].row(j), is_near)) return false;
-        }
-        return true;
-    };
-    const std::size_t channels = std::min(planes.size(), stored.swizzle.size());
-    for (std::size_t c = 0; c < channels; ++c) {
-        if (holds_component(c) || counts.high[c] - counts.low[c] <= (stored.in_blocks ? kBlockError : 0.0f)) continue;
-        bool copied = false;
-        for (std::size_t other = 0; other < channels; ++other)
-            copied = copied || (holds_component(other) && equal(c, other));
-        if (!copied) return true;
-    }
-    return false;
-}
-
-// Finds the background, and counts again without it.
-Result<void> leave_out_background(CheckContext& context) {
-    const TexelCounts& counts = context.counts;
-    const double off = std::max(
-        {counts.share(Property::off_length), counts.share(Property::null_vector), counts.share(Property::beyond_unit)});
-    // Black and white that were normalised are unit vectors; a map with many of them leans.
-    constexpr double kLean = 0.02;
-    const double lean = std::max(std::abs(counts.mean_x), std::abs(counts.mean_y));
-    if (context.constant || (off < kLeastBackground && lean < kLean)) return {};
-    auto background = find_background(context.stored, context.execution);
-    if (!background) return background.error();
-    context.background = std::move(*background);
-    if (!context.background) return {};
-    auto others = count_texels(context.stored, context.execution, &*context.background);
-    if (!others) return others.error();
-    context.counts = *others;
-    return {};
-}
-
-Result<void> measure(CheckContext& context) {
-    PlaneNeeds needs;
-    needs.share_constants = true;
-    auto image = decode_planes(context.texture, context.texture.levels.front(), needs, context.execution);
-    if (!image) return image.error();
-    context.base = std::move(*image);
-    const auto swizzle = guess_swizzle(context.texture, context.execution);
-    if (!swizzle) return swizzle.error();
-    context.stored = {&context.base, *swizzle,
-                      stores_signed(context.base, *swizzle, range_of(context.texture.normal_encoding, {})),
-                      format_info(context.texture.format).has_blocks()};
-    const Stored& stored = context.stored;
-    context.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;
-    if (!context.has_vectors) return {};
-    auto counts = count_texels(stored, context.execution);
-    if (!counts) return counts.error();
-    context.counts = *counts;
-    context.constant = same_everywhere(context.counts, static_cast<int>(context.base.planes.size()));
-    if (auto done = leave_out_background(context); !done) return done;
-    const Extent extent = stored.extent();
-    context.sampled_ok = !context.constant && extent.width >= kLeastSide && extent.height >= kLeastSide;
-    if (!context.sampled_ok) return {};
-    auto curl = measure_curl(stored, context.execution);
-    if (!curl) return curl.error();
-    context.curl = std::move(*curl);
-    // The rules ask how much of the map holds normals, of what ought to.
-    const auto texels = static_cast<double>(extent.texels());
-    context.curl.usable =
-        std::min(1.0, context.curl.usable * texels / std::max(1.0, static_cast<double>(context.counts.texels)));
-    context.y.correlation = context.curl.correlation;
-    context.y.confidence = context.curl.confidence;
-    context.y.y = clear_y(context.curl);
     return {};
 }
 
@@ -251,6 +159,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = measure(context); !done) return done.error();
         Findings findings(options);
         check_file_rules(context, findings);
+        check_kind_rules(context, findings);
         check_value_rules(context, findings);
         if (auto done = check_other_rules(context, findings); !done) return done.error();
         if (auto done = check_damage_rules(context, findings); !done) return done.error();

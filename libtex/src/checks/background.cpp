@@ -39,12 +39,13 @@ public:
     [[nodiscard]] StoredVector at(int i, int j) const {
         return {stored_.component(x_, i, j), stored_.component(y_, i, j), z_ < 0 ? 0.0f : stored_.component(z_, i, j)};
     }
+    [[nodiscard]] bool has_z() const { return z_ >= 0; }
     // Whether no filter and no codec makes this of normals. False for NaN.
     [[nodiscard]] bool is_no_normal(const StoredVector& v) const {
         const float square = v.square();
-        if (is_bleached(v)) return true;
+        if (is_bleached(v) || (z_ >= 0 && Background::is_turned_over(v.x, v.y, v.z))) return true;
         if (z_ < 0) return square > kOutside * kOutside;
-        return square < kShortest * kShortest || square > kLongest * kLongest;
+        return square < kShortest * kShortest || (square > kLongest * kLongest && !is_long_normal(v));
     }
     // Whether this may be a mixture of normals and background.
     [[nodiscard]] bool is_off(const StoredVector& v) const {
@@ -62,6 +63,13 @@ private:
         return is(v.x) && is(v.y) && (z_ < 0 || is(v.z));
     }
 
+    // Whether this is what tools make of steep bevels that they do not normalise: it leans, and points outwards.
+    static bool is_long_normal(const StoredVector& v) {
+        constexpr float kMost = 1.5f, kOutwards = 0.3f, kGrey = 0.1f;
+        const auto [least, most] = std::minmax({v.x, v.y, v.z});
+        return v.square() < kMost * kMost && v.z > kOutwards && most - least > kGrey;
+    }
+
     const Stored& stored_;
     const int x_, y_, z_;
 };
@@ -71,10 +79,12 @@ std::size_t bin_of(float c) {
 }
 
 // The most frequent value among the vectors that are no normals.
-std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Extent extent) {
+std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Extent extent,
+                                                  const std::optional<Background>& transparent) {
     std::vector<std::uint32_t> counts(std::size_t{kGridBins} * kGridBins * kGridBins);
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
+            if (transparent && transparent->holds(i, j)) continue;
             const StoredVector v = map.at(i, j);
             if (map.is_no_normal(v)) ++counts[(bin_of(v.x) * kGridBins + bin_of(v.y)) * kGridBins + bin_of(v.z)];
         }
@@ -96,6 +106,7 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
         std::uint8_t* const mask =
             background.mask.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width);
         for (int i = 0; i < extent.width; ++i) {
+            if (mask[i] != 0) continue;
             const StoredVector v = map.at(i, j);
             if (!near(v.x, value[0]) || !near(v.y, value[1]) || !near(v.z, value[2])) continue;
             mask[i] = 1;
@@ -143,7 +154,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     };
     const Execution silent = execution.quiet();
     if (auto done = parallel_for(silent, extent.height, kRowsPerPiece, find); !done) return done;
-    background.masked = background.texels;
+    background.masked = background.texels + background.transparent;
     for (int j = 0; j < extent.height; ++j) {
         for (const int i : mixed[static_cast<std::size_t>(j)]) at(i, j) = 2;
         background.masked += static_cast<std::int64_t>(mixed[static_cast<std::size_t>(j)].size());
@@ -151,18 +162,86 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     return {};
 }
 
+// A value that points straight into the surface is background if the other vectors do not. In object space, and where
+// blue is inverted, they do.
+bool others_point_outwards(const StoredVectors& map, Extent extent, const Background& background) {
+    constexpr float kBehind = -0.1f;
+    constexpr double kMostBehind = 0.01;
+    std::int64_t behind = 0, others = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            if (background.holds(i, j)) continue;
+            ++others;
+            behind += map.at(i, j).z < kBehind ? 1 : 0;
+        }
+    }
+    return static_cast<double>(behind) <= kMostBehind * static_cast<double>(others);
+}
+
+// Whether alpha 0 hides texels: alpha is a cut-out, nearly 1 in half of the others or more, or no normals are below it.
+// In heights, 0 is the deepest place, and its normals are seen.
+bool hides_something(const Stored& stored, const Background& transparent) {
+    constexpr float kOpaque = 0.98f, kUnit = 0.12f;
+    constexpr double kCutOut = 0.5, kNormals = 0.9;
+    const StoredVectors map(stored);
+    const Extent extent = stored.extent();
+    std::int64_t opaque = 0, units = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        const float* const alpha = stored.image->planes[3].row(j);
+        for (int i = 0; i < extent.width; ++i) {
+            opaque += alpha[i] >= kOpaque ? 1 : 0;
+            if (transparent.holds(i, j)) units += std::abs(std::sqrt(map.at(i, j).square()) - 1.0f) < kUnit ? 1 : 0;
+        }
+    }
+    const auto all = static_cast<double>(extent.texels()), hidden = static_cast<double>(transparent.transparent);
+    return static_cast<double>(opaque) >= kCutOut * (all - hidden) ||
+           (map.has_z() && static_cast<double>(units) < kNormals * hidden);
+}
+
 }  // namespace
 
-Result<std::optional<Background>> find_background(const Stored& stored, const Execution& execution) {
+std::optional<Background> find_transparent(const Stored& stored) {
+    constexpr std::size_t kAlpha = 3;
+    constexpr double kLeastSeen = 0.02;  // share of the texels: alpha that is 0 nearly everywhere is no cut-out
+    const auto& planes = stored.image->planes;
+    const Component held = stored.swizzle[kAlpha];
+    if (planes.size() <= kAlpha || held == Component::x || held == Component::y || held == Component::z) return {};
+    const Extent extent = stored.extent();
+    std::optional<Background> found;
+    for (int j = 0; j < extent.height; ++j) {
+        const float* const alpha = planes[kAlpha].row(j);
+        const std::int64_t zeros = std::count(alpha, alpha + extent.width, 0.0f);
+        if (zeros == 0) continue;
+        if (!found) {
+            found.emplace();
+            found->width = extent.width;
+            found->mask.resize(static_cast<std::size_t>(extent.texels()));
+        }
+        std::uint8_t* const mask =
+            found->mask.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width);
+        for (int i = 0; i < extent.width; ++i) mask[i] = alpha[i] == 0.0f ? Background::kTransparent : 0;
+        found->transparent += zeros;
+    }
+    if (!found) return found;
+    if (!hides_something(stored, *found)) return {};
+    found->masked = found->transparent;
+    const auto seen = static_cast<double>(extent.texels() - found->transparent);
+    if (seen < kLeastSeen * static_cast<double>(extent.texels())) return {};
+    return found;
+}
+
+Result<std::optional<Background>> find_background(const Stored& stored, const Execution& execution,
+                                                  std::optional<Background> transparent) {
     const Extent extent = stored.extent();
     const StoredVectors map(stored);
-    const auto value = most_frequent(map, extent);
-    if (!value) return std::optional<Background>();
-    Background background;
+    const auto value = most_frequent(map, extent, transparent);
+    if (!value) return transparent;
+    Background background = transparent ? *transparent : Background();
     background.value = *value;
     background.width = extent.width;
     background.mask.resize(static_cast<std::size_t>(extent.texels()));
-    if (!mark_value(map, extent, background)) return std::optional<Background>();
+    if (!mark_value(map, extent, background)) return transparent;
+    if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;
     const int reach = stored.in_blocks ? 2 * kMixReach : kMixReach;
     if (auto done = mark_mixtures(map, extent, reach, execution, background); !done) return done.error();
     return std::optional(std::move(background));

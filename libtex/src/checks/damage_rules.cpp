@@ -16,6 +16,7 @@
 #include "checks/grid.h"
 #include "checks/jpeg.h"
 #include "checks/lattice.h"
+#include "checks/scaled.h"
 #include "checks/seam.h"
 #include "checks/thresholds.h"
 #include "threads/parallel.h"
@@ -27,6 +28,8 @@ namespace {
 constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
+constexpr double kJpegLead = 1.15;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
+constexpr int kLeastTurnedSide = 64;          // smaller maps, as pixel art, seem exchanged by chance
 constexpr int kLatticeTeeth = 6;
 constexpr double kLatticeUneven = 0.25;
 constexpr double kAboveAlphaShare = 0.002;
@@ -65,6 +68,7 @@ struct Traces {
     double grid_ratio = 0.0;  // of the format's own blocks
     JpegTrace jpeg;           // in a format without blocks
     Lattice lattice;
+    Enlargement enlargement;
 };
 
 // Measures all at once, on several threads. Each measure is the work of one of them.
@@ -74,10 +78,12 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
     if (context.sampled_ok) {
         measures.emplace_back([&] {
             if (is_astc(context.texture.format)) return;  // its blocks have other sides, and smooth borders
-            if (const FormatInfo info = format_info(context.texture.format); info.has_blocks())
+            if (const FormatInfo info = format_info(context.texture.format); info.has_blocks()) {
                 traces.grid_ratio = grid_ratio(stored, info.block.width);
-            else
-                traces.jpeg = measure_jpeg(stored);
+                return;
+            }
+            traces.enlargement = find_enlargement(stored);
+            if (traces.enlargement.factor == 1) traces.jpeg = measure_jpeg(stored);
         });
         measures.emplace_back([&] { traces.lattice = measure_lattice(stored); });
     }
@@ -110,6 +116,25 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
     finding.confidence = 0.99;
 }
 
+// Whether x and y centre on half of alpha where it is neither 0 nor 1. In LabPBR, blue is occlusion and may follow the
+// heights in alpha, but x and y centre on 0.5 everywhere.
+bool are_x_and_y_multiplied(const Stored& stored) {
+    double from_half = 0.0, from_alpha = 0.0;
+    const Plane<float>& alpha = stored.image->planes[3];
+    for (const Component component : {Component::x, Component::y}) {
+        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
+        for (int j = 0; j < alpha.extent().height; ++j) {
+            for (int i = 0; i < alpha.extent().width; ++i) {
+                const float a = alpha.at(i, j), c = plane.at(i, j);
+                if (!(a > 0.1f && a < 0.9f)) continue;
+                from_half += std::abs(static_cast<double>(c) - 0.5);
+                from_alpha += std::abs(static_cast<double>(c) - 0.5 * static_cast<double>(a));
+            }
+        }
+    }
+    return from_alpha < from_half;
+}
+
 void check_alpha(const CheckContext& context, Findings& findings) {
     const TexelCounts& counts = context.counts;
     const Stored& stored = context.stored;
@@ -125,6 +150,7 @@ void check_alpha(const CheckContext& context, Findings& findings) {
             half += alpha.at(i, j) > 0.1f && alpha.at(i, j) < 0.9f ? 1.0 : 0.0;
     }
     if (half < kHalfAlphaShare * static_cast<double>(counts.all)) return;
+    if (!are_x_and_y_multiplied(stored)) return;
     const double as_stored = length_error(stored, [](double c, int, int) { return c; });
     const double restored = length_error(stored, [&](double c, int i, int j) {
         const double a = alpha.at(i, j);
@@ -161,6 +187,7 @@ void check_exchanged(const CheckContext& context, Findings& findings) {
         finding.confidence = 0.99;
         return;
     }
+    if (std::min(context.stored.extent().width, context.stored.extent().height) < kLeastTurnedSide) return;
     const double as_stored = std::abs(context.curl.correlation), exchanged = std::abs(context.curl.exchanged);
     const bool behind = counts.share(Property::z_behind) > 0.05;
     if (behind || exchanged < as_stored + kExchangedLead || exchanged < kExchangedLeast) return;
@@ -204,6 +231,15 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
         }
         return;
     }
+    // An enlarged picture has a grid, too, but no codec has touched it since.
+    if (const Enlargement& scaled = traces.enlargement; scaled.factor > 1) {
+        add("N312",
+            (scaled.is_linear ? "linear interpolation between every " : "the same value in squares of ") +
+                (scaled.is_linear ? std::to_string(scaled.factor) + " texels"
+                                  : extent_text({scaled.factor, scaled.factor}) + " texels"),
+            scaled.factor, "ratio");
+        return;
+    }
     // The first trace found counts, because blocks of 8x8 are also blocks of 4x4.
     const JpegTrace& jpeg = traces.jpeg;
     if (jpeg.weight() > thresholds::kJpegTrace && stands_out(jpeg, context.stored)) {
@@ -219,7 +255,7 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
         return;
     }
     const double ratio = grid_ratio(context.stored, 8);
-    if (ratio > thresholds::kJpegRatio)
+    if (ratio > thresholds::kJpegRatio && grid_lead(context.stored, 8) > kJpegLead)
         add("N304", "steps between 8x8 blocks are " + times(ratio) + " those inside", ratio, "ratio");
 }
 

@@ -21,6 +21,7 @@ constexpr double kMostShared = 0.5;    // see TurnScale::shared()
 constexpr double kLeastOther = 0.015;  // of the energy of p in that of q or the other way: less is one direction
 constexpr double kClearAxis = 0.5;     // strength of an axis that counts, and by how many degrees such axes may differ:
 constexpr double kMostApart = 15.0;    // turned maps of which scales show more than rounding differ by at most 11
+constexpr int kLeastSideForTurn = 64;  // smaller maps, as pixel art, have axes by chance
 constexpr double kMostTurned = 75.0;   // a quarter turn is the same as exchanged channels: N308
 
 bool shows_more_than_rounding(const TurnScale& scale) { return scale.rms() >= kLeastRms; }
@@ -49,7 +50,9 @@ const TurnScale* clearest_scale(const Turn& turn) {
     return best;
 }
 
-void check_turned(const Turn& turn, Findings& findings) {
+void check_turned(const CheckContext& context, const Turn& turn, Findings& findings) {
+    const auto [width, height] = context.stored.extent();
+    if (std::min(width, height) < kLeastSideForTurn) return;
     const TurnScale* const scale = clearest_scale(turn);
     if (scale == nullptr || scale->clearest().strength() < thresholds::kTurnStrength) return;
     const double angle = scale->clearest().angle();
@@ -87,7 +90,7 @@ Result<void> check_field_rules(const CheckContext& context, Findings& findings) 
     if (!findings.wants("N309") && !findings.wants("N310")) return {};
     const auto turn = measure_turn(context.stored, context.execution);
     if (!turn) return turn.error();
-    check_turned(*turn, findings);
+    check_turned(context, *turn, findings);
     check_noise(context, *turn, findings);
     return {};
 }

@@ -37,6 +37,13 @@ Finding& Findings::add(std::string_view id, std::string message) {
     return finding;
 }
 
+void Findings::soften(Finding& finding, Severity severity) const {
+    const auto names_it = [&](const auto& row) {
+        return row.first == finding.rule->id || row.first == finding.rule->name;
+    };
+    if (std::none_of(options_.severity.begin(), options_.severity.end(), names_it)) finding.severity = severity;
+}
+
 Finding* Findings::find(std::string_view id) {
     const auto found =
         std::find_if(findings_.begin(), findings_.end(), [&](const Finding& one) { return one.rule->id == id; });
@@ -57,6 +64,25 @@ std::vector<Finding> Findings::take(int& explained) {
         return a.rule->id != b.rule->id ? a.rule->id < b.rule->id : level(a) < level(b);
     });
     return kept;
+}
+
+void set_texel(Finding& finding, int column, int row) {
+    finding.regions = {{0, column, row, 1, 1}};
+    finding.has_texel = true;
+    finding.column = column;
+    finding.row = row;
+}
+
+Finding& add_counted(const CheckContext& context, Findings& findings, std::string_view id, Property property,
+                     const std::string& what) {
+    const Tally& tally = context.counts[property];
+    const double share = context.counts.share(property);
+    Finding& finding = findings.add(
+        id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
+    finding.figure = share;
+    finding.unit = "share";
+    set_texel(finding, tally.column, tally.row);
+    return finding;
 }
 
 std::string decimal(double value, int decimals) {

@@ -11,6 +11,7 @@
 #include <tex/check.h>
 
 #include "checks/curl.h"
+#include "checks/kind.h"
 #include "checks/stored.h"
 #include "checks/texel_counts.h"
 
@@ -28,6 +29,8 @@ struct CheckContext {
     bool constant = false;    // all channels are constant
     bool sampled_ok = false;  // large and varied enough for statistics
     std::optional<Background> background = {};
+    Kind kind = Kind::normals;
+    KindMeasure kind_measure = {};  // without texels if lengths do not matter, or values are components
     TexelCounts counts = {};
     Curl curl = {};
     YEvidence y = {};  // what the curl shows
@@ -41,6 +44,8 @@ public:
     [[nodiscard]] bool wants(std::string_view id) const;
     // Adds a finding of rule `id`. If that rule is not wanted, the result is a dummy that is not read.
     Finding& add(std::string_view id, std::string message);
+    // Gives a finding a lower severity, unless the options name one for its rule.
+    void soften(Finding& finding, Severity severity) const;
     // The finding of this rule, or null.
     Finding* find(std::string_view id);
     // Returns the findings in order, without those that other findings explain; `explained` counts the omitted ones.
@@ -51,6 +56,12 @@ private:
     std::vector<Finding> findings_;
     Finding ignored_;
 };
+
+// Marks the first affected texel of the base level.
+void set_texel(Finding& finding, int column, int row);
+// Adds a finding that says how many texels have a property.
+Finding& add_counted(const CheckContext& context, Findings& findings, std::string_view id, Property property,
+                     const std::string& what);
 
 // Numbers for messages, the same in every locale.
 std::string decimal(double value, int decimals);

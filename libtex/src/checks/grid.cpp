@@ -35,8 +35,11 @@ std::vector<double> mean_steps(const Plane<float>& plane, Rect window, bool colu
     return steps;
 }
 
-double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, int block, bool columns) {
+// Divides by the median elsewhere, or, if `by_largest`, by the largest of the medians at each place within blocks.
+double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, int block, bool columns,
+                  bool by_largest) {
     std::vector<double> at_borders, elsewhere, half_way, quarter_way;
+    std::vector<std::vector<double>> by_phase(static_cast<std::size_t>(block));
     for (const Rect& window : windows) {
         const std::vector<double> steps = mean_steps(plane, window, columns);
         double sum = 0.0;
@@ -48,6 +51,7 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
             const double ratio = (steps[k] + floor) / ((steps[k - 1] + steps[k + 1]) / 2.0 + floor);
             const auto phase = static_cast<int>((k + 1) % static_cast<std::size_t>(block));
             (phase == 0 ? at_borders : elsewhere).push_back(ratio);
+            if (by_largest) by_phase[static_cast<std::size_t>(phase)].push_back(ratio);
             if (phase == block / 2) half_way.push_back(ratio);
             if (phase == block / 4 || phase == 3 * block / 4) quarter_way.push_back(ratio);
         }
@@ -55,7 +59,21 @@ double axis_ratio(const Plane<float>& plane, const std::vector<Rect>& windows, i
     if (at_borders.size() < kLeastBorders) return 1.0;
     const double usual = median(elsewhere), border = median(at_borders), half = median(half_way);
     if (half > kHalfStandsOut * median(quarter_way) && half > kHalfAsMuch * border) return 1.0;
-    return usual > 0.0 ? border / usual : 1.0;
+    double divisor = usual;
+    for (std::size_t phase = 1; by_largest && phase < by_phase.size(); ++phase)
+        divisor = std::max(divisor, median(by_phase[phase]));
+    return divisor > 0.0 ? border / divisor : 1.0;
+}
+
+double largest_ratio(const Stored& stored, int block, bool by_largest) {
+    const std::vector<Rect> windows = sample_windows(stored.extent());
+    double most = 1.0;
+    for (const Component component : {Component::x, Component::y}) {
+        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
+        most = std::max(most, std::min(axis_ratio(plane, windows, block, true, by_largest),
+                                       axis_ratio(plane, windows, block, false, by_largest)));
+    }
+    return most;
 }
 
 using Color = std::array<float, 3>;
@@ -177,16 +195,9 @@ double grid_excess(const Stored& stored, int block) {
     return most;
 }
 
-double grid_ratio(const Stored& stored, int block) {
-    const std::vector<Rect> windows = sample_windows(stored.extent());
-    double most = 1.0;
-    for (const Component component : {Component::x, Component::y}) {
-        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
-        most =
-            std::max(most, std::min(axis_ratio(plane, windows, block, true), axis_ratio(plane, windows, block, false)));
-    }
-    return most;
-}
+double grid_ratio(const Stored& stored, int block) { return largest_ratio(stored, block, false); }
+
+double grid_lead(const Stored& stored, int block) { return largest_ratio(stored, block, true); }
 
 double palette_share(const Stored& stored) {
     if (is_along_one_axis(*stored.image)) return 0.0;

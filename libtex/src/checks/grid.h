@@ -14,6 +14,10 @@ namespace tex::inline v1 {
 // but a codec's lie on all. The result is the lesser of both directions, for channel x or y, whichever shows more.
 double grid_ratio(const Stored& stored, int block);
 
+// The same, but divided by the largest of the medians at the other places within blocks. It is 1 if the grid is that of
+// a map which was enlarged by a divisor of `block`: its lines are all alike.
+double grid_lead(const Stored& stored, int block);
+
 // By how much the mean step across the borders of blocks exceeds the mean step inside them, in stored values (1 is the
 // full scale of unorm). The result is the lesser of both directions, for channel x or y, whichever shows more.
 double grid_excess(const Stored& stored, int block);

@@ -3,6 +3,8 @@
 #include "checks/mesh_fit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -123,6 +125,31 @@ std::string figures(const SeamEvidence& evidence) {
            decimal(evidence.worst, 2) + " degrees";
 }
 
+// Green that points the other way than it should and w of the other sign cancel. If there are seams, they must meet
+// better as they are than with one of the two put right.
+void check_cancelled(const CheckContext& context, const SeamEvidence* given, const SeamEvidence* otherwise,
+                     Findings& findings) {
+    constexpr double kNearlyAll = 0.95, kClearly = 0.8, kConfidence = 0.95;
+    const Finding* const signs = findings.find("N706");
+    if (signs == nullptr || signs->figure < kNearlyAll) return;
+    const double correlation = context.y.correlation;
+    const bool is_down = correlation < 0.0;
+    if (std::abs(correlation) < kLeastCorrelation || context.y.confidence < kConfidence) return;
+    if (is_down == (y_on_mesh(context) == YAxis::down)) return;
+    std::string message = "green points " + direction(is_down ? YAxis::down : YAxis::up) + " (correlation " +
+                          decimal(correlation, 2) + "), and w is the other way in " + percent(signs->figure) +
+                          " of the triangles";
+    if (given != nullptr && otherwise != nullptr) {
+        if (given->mean >= kClearly * otherwise->mean) return;
+        message += "; the normals on both sides of seams are " + decimal(given->mean, 1) + " degrees apart, and " +
+                   decimal(otherwise->mean, 1) + " if one of the two is put right";
+    }
+    Finding& finding = findings.add("N707", std::move(message));
+    finding.figure = correlation;
+    finding.unit = "correlation";
+    finding.confidence = context.y.confidence;
+}
+
 }  // namespace
 
 YAxis y_on_mesh(const CheckContext& context) {
@@ -134,18 +161,23 @@ YAxis y_on_mesh(const CheckContext& context) {
 Result<std::optional<SeamEvidence>> check_mesh_fit(const CheckContext& context, Findings& findings) {
     const SelectedPart& selected = context.options.mesh->selected;
     const std::vector<SeamEdge> edges = find_seams(selected.part);
-    if (edges.empty()) return std::optional<SeamEvidence>();
+    if (edges.empty()) {
+        check_cancelled(context, nullptr, nullptr, findings);
+        return std::optional<SeamEvidence>();
+    }
     const SeamSamples samples(selected.part, edges, context.stored, context.options.mesh->scale);
     const Extent extent = context.stored.extent();
     Candidates candidates(context, samples);
     const bool y_up = y_on_mesh(context) == YAxis::up;
     const Candidate given = candidates.given(y_up);
     const SeamEvidence evidence = seam_evidence(samples, given.gaps, extent);
+    Candidate flipped = candidates.given(!y_up);
+    const SeamEvidence otherwise = seam_evidence(samples, flipped.gaps, extent);
+    check_cancelled(context, &evidence, &otherwise, findings);
     if (!findings.wants("N711")) return std::optional(evidence);
 
     // Only a map whose y clearly meets at the seams can show what it was made for. Most maps do that one way or the
     // other; too few texels on each side, or a map that was never baked on this mesh, do neither.
-    Candidate flipped = candidates.given(!y_up);
     const SeamVerdict verdict_y = compare_gaps(samples, given.gaps, flipped.gaps);
     const bool is_flipped = verdict_y.slope >= 1.0 - thresholds::kSeamSlope && verdict_y.confidence >= kConfident;
     const bool is_right = verdict_y.slope <= thresholds::kSeamSlope && verdict_y.confidence <= 1.0 - kConfident;

@@ -14,6 +14,7 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr int kAlpha = 3;
+constexpr std::size_t kBlue = 2;
 constexpr double kMostLean = 0.25;     // of x or y in the mean: more is no normal map, whatever blue holds
 constexpr double kBelow = 0.0005;      // share of texels whose z is below 0
 constexpr double kZFollows = 0.5;      // correlation of z with rebuilt z: z of JPEGs of low quality has more
@@ -75,11 +76,21 @@ Result<bool> has_better_slopes_without_z(const CheckContext& context) {
     return std::abs(curl->correlation) > std::abs(context.curl.correlation) + kBetter;
 }
 
+// Data in alpha, too, are the layout of LabPBR, and meant.
+void add_other_data(const CheckContext& context, Findings& findings) {
+    const TexelCounts& counts = context.counts;
+    Finding& finding = findings.add(
+        "N219", "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
+                    " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
+    if (context.base.planes.size() > kAlpha && counts.high[kAlpha] > counts.low[kAlpha])
+        findings.soften(finding, Severity::note);
+}
+
 // Whether blue follows x and y, as z does.
 Result<void> check_stored_z(const CheckContext& context, Findings& findings) {
-    constexpr std::size_t kBlue = 2;
     const Stored& stored = context.stored;
     const TexelCounts& counts = context.counts;
+    if (context.kind == Kind::two_components && context.sampled_ok) add_other_data(context, findings);
     const bool is_floating = format_info(context.texture.format).sample == SampleKind::floating;
     if (!context.sampled_ok || context.options.any_length || is_floating || stored.swizzle[kBlue] != Component::z ||
         counts.high[kBlue] - counts.low[kBlue] <= (stored.in_blocks ? kBlockError : 0.0f))
@@ -98,11 +109,7 @@ Result<void> check_stored_z(const CheckContext& context, Findings& findings) {
         is_sure = counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(context);
     }
     if (!is_sure) return is_sure.error();
-    if (*is_sure) {
-        findings.add("N219",
-                     "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
-                         " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
-    }
+    if (*is_sure) add_other_data(context, findings);
     return {};
 }
 

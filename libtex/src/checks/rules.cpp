@@ -121,7 +121,10 @@ constexpr Rule kRules[] = {
      "world-space map.",
      "", "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
-     "Nearly all texels are far from unit length and many point away from the surface: colours, not vectors.", "",
+     "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
+     "G "
+     "rise and fall together, or do not centre on the middle. No other rule judges the texels.",
+     "Give the slot of the normal map the picture that belongs there.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     {"N215", "background", values, warning, true, "The background is not filled.",
@@ -149,16 +152,32 @@ constexpr Rule kRules[] = {
      "and channel packers that were given the same file twice.",
      "pack-normals FILE --keep-length --drop --format SAME -o FIXED", "N212"},
     {"N219", "blue-other-data", values, warning, true, "Blue holds other data than z.",
-     "It varies, and does not follow x and y as the z of unit vectors does: occlusion, roughness or heights, as in "
-     "LabPBR. One texel in ten or more has less than 0.45 of a unit vector's length; or vectors are longer and shorter "
-     "at "
-     "random; or z falls below 0, or with a rebuilt z the slopes have less curl. Nearly flat maps whose blue stays "
-     "light "
-     "look like vectors of uneven length (N201). Readers that do not rebuild z get bent normals. Floats are not "
-     "judged.",
+     "It varies, and does not follow x and y as the z of unit vectors does: occlusion, roughness or heights. If alpha "
+     "varies, too, as heights of LabPBR do, this is a note. One texel in ten or more has less than 0.45 of a unit "
+     "vector's length; or vectors are longer and shorter at random; or z falls below 0, or with a rebuilt z the slopes "
+     "have less curl. Nearly flat maps whose blue stays light look like vectors of uneven length (N201). Readers that "
+     "do not rebuild z get bent normals. Floats are not judged; the other rules judge x and y alone.",
      "Read the map with --swizzle rg, which rebuilds z; unpack-normals --swizzle rg --blue-out writes the data to a "
      "separate file.",
-     "N201 N202 N205 N213 N214 N305 N308 N309 N310 N402 N403 N404"},
+     "N201 N202 N205 N207 N213 N214 N305 N308 N309 N310 N402 N403 N404"},
+
+    {"N220", "blue-inverted", values, error, true, "Blue is inverted.",
+     "z is below 0 nearly everywhere, while x and y lie about 0, as in tangent space. An exporter or an image editor "
+     "inverted blue. Lit from the front, the surface is black.",
+     "Read the map with --swizzle rg, which rebuilds z, or invert blue in an image editor.",
+     "N115 N201 N202 N205 N207 N213 N214 N215 N219 N305 N310 N402"},
+    {"N221", "blue-from-zero", values, warning, true, "Blue holds z from 0 to 1.",
+     "Vectors are of unit length if z is blue, and not if it is 2 blue - 1. Readers that do not rebuild z get bent "
+     "normals, which point into the surface where it is steep.",
+     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214 N219"},
+    {"N222", "x-lost", values, error, true, "x of the normals is lost.",
+     "R and B are constant, and there is no alpha, which holds x in the layout of DXT5nm. Tools that extract textures "
+     "from games leave alpha out, and so does DXT1. Nothing can bring x back.",
+     "Export the map again with its alpha.", ""},
+    {"N223", "x-ray-layout", values, note, true, "The channels are those of the X-Ray engine.",
+     "x, y and z are in A, B and G, and R holds gloss. Other engines need another layout. The other rules judge the "
+     "map in this one.",
+     "For other engines, copy A to R, B to G and G to B in an image editor.", ""},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
@@ -214,6 +233,9 @@ constexpr Rule kRules[] = {
      "Write the file again, or its header alone, with the format that the message names.",
      "N201 N202 N203 N205 N206 N207 N208 N213 N214 N215 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 "
      "N404 N501 N502 N503 N504"},
+    {"N312", "scaled-up", damage, note, true, "The map was enlarged.",
+     "Its texels repeat, or lie on lines between those of a smaller map: it holds the details of that one alone.",
+     "Bake the map at this size, or use the smaller one. Pixel art is meant to be so.", ""},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
@@ -289,6 +311,12 @@ constexpr Rule kRules[] = {
      "In these triangles, the bitangent points down in the map. Bumps are lit from the wrong side there. Exporters "
      "that turn v around but not w cause this, and tools that drop w.",
      "Export the mesh again, with tangents that are made anew.", "N705 N711"},
+    {"N707", "sign-and-green-cancel", mesh, note, true, "w of tangents and green are both the other way.",
+     "w contradicts the UVs, and green points the other way than the engine reads it. The two cancel wherever the "
+     "tangents of the file are used, and seams, if there are any, meet so. Engines that make their own tangents show "
+     "dents as bumps.",
+     "Change both or none: export new tangents, and turn green with pack-normals --y-in and --y.",
+     "N401 N404 N705 N706"},
     {"N711", "other-tangent-space", mesh, error, true, "The map was made for another tangent space.",
      "The normals on both sides of UV seams are the same direction of the surface, so they must decode to the same "
      "vector in object space. They do so with another decoder, with other tangents, or if green points the other way. "

@@ -10,6 +10,7 @@
 
 #include <tex/types.h>
 
+#include "checks/background.h"
 #include "rows/unpack_rows.h"
 
 namespace tex::inline v1 {
@@ -102,7 +103,9 @@ Slopes slopes_of(const Stored& stored, Rect window) {
             const float z = cz >= 0 ? stored.component(cz, window.x + i, window.y + j) : reconstruct_z(x, y);
             const float square = flat + z * z;
             // Written so that NaN makes it false.
-            const bool usable = square >= 0.25f && square <= 4.0f && z >= kLeastZ && (cz >= 0 || flat <= 1.04f);
+            const bool usable =
+                square >= 0.25f && square <= 4.0f && z >= kLeastZ && (cz >= 0 || flat <= 1.04f) &&
+                (stored.transparent == nullptr || !stored.transparent->is_transparent(window.x + i, window.y + j));
             unusable |= !usable;
             slopes.p.at(i, j) = usable ? -x / z : kNan;
             slopes.q.at(i, j) = usable ? -y / z : kNan;

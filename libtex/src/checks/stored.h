@@ -12,12 +12,15 @@
 
 namespace tex::inline v1 {
 
+struct Background;
+
 // The channels of a level and their meaning. Green is as stored: y points up if it does in the file.
 struct Stored {
     const Image* image = nullptr;  // R, G, B, A from decode()
     Swizzle swizzle{};
-    bool is_signed = false;  // values are components; otherwise (n + 1) / 2
-    bool in_blocks = false;  // decoded from texel blocks
+    bool is_signed = false;                   // values are components; otherwise (n + 1) / 2
+    bool in_blocks = false;                   // decoded from texel blocks
+    const Background* transparent = nullptr;  // texels that have no slopes, because alpha is 0 there; or null
 
     [[nodiscard]] Extent extent() const { return image->extent(); }
     // The channel that holds `component`, or -1.
@@ -50,7 +53,7 @@ std::vector<Rect> sample_windows(Extent extent);
 std::vector<Rect> sample_windows(Extent extent, int size);
 
 // Slopes p = -x/z and q = -y/z of a window. They are NaN if a texel has no usable normal: it is not finite, is shorter
-// than 0.5, has z below 0.05, or has x^2 + y^2 above 1.04 and no stored z.
+// than 0.5, has z below 0.05, has x^2 + y^2 above 1.04 and no stored z, or is transparent.
 struct Slopes {
     Plane<float> p, q;
     [[nodiscard]] Extent extent() const { return p.extent(); }

@@ -42,6 +42,41 @@ inline constexpr double kTurnAngle = 15.0;
 inline constexpr double kNoiseCurl = 0.43;
 inline constexpr double kNoiseCorrelation = 0.05;
 
+// -- of pictures that are no normal maps: kind.h ----------------------------------------------------------------------
+// Set on the half of the files of ../shared/data/wild4 whose names have an even first byte of their SHA-256, and of
+// these colour pictures made darker, lighter, brown, beige, violet and grey. The nature of the two gives wide margins.
+// Share of vectors of about unit length. Normal maps have 0.84 and more, after JPEG and BC1, too. Colour pictures have
+// up to 0.57; those of one light colour have up to 1, and centre elsewhere.
+inline constexpr double kUnitShare = 0.75;
+// The same after a damage was undone. Rounding came in between: 0.63 and more.
+inline constexpr double kRestoredShare = 0.6;
+// Medians of x and y, or of the two components that are not near 1. Leaning maps: up to 0.29.
+inline constexpr double kCentred = 0.35;
+inline constexpr double kRestoredCentre = 0.15;  // sRGB, read the other way: at most 0.03
+inline constexpr double kUprightMedian = 0.6;    // of z then
+// Correlation of x and y. Colours are bright or dark in all channels: 0.8 to 1 in most. Normal maps whose vectors do
+// not follow each other: at most 0.48.
+inline constexpr double kColorRelated = 0.8;
+inline constexpr double kRestoredRelated = 0.6;
+inline constexpr double kNoiseOnly = 0.03;  // standard deviation of x and y below which a correlation means nothing
+// Correlation of z with sqrt(1 - x^2 - y^2), if that varies by kZImplied or more. Light colours have -0.7 to -1.
+inline constexpr double kZFollows = 0.5;
+inline constexpr double kZImplied = 0.012;
+inline constexpr double kAllDirections = 0.3;  // variances of x, y and z together: maps in object space have 0.9
+inline constexpr double kGreyTexels = 0.9;     // share of texels whose R, G and B are alike
+// Two components beside other data in blue, as in LabPBR: x and y centre, do not follow each other, stay inside of the
+// unit circle. The maps have medians up to 0.17, correlations up to 0.42, none outside, and up to 0.4 grey.
+inline constexpr double kMostGrey = 0.5;
+inline constexpr double kMostOutside = 0.02;
+inline constexpr double kTwoCentred = 0.3;
+inline constexpr double kTwoRelated = 0.5;
+inline constexpr double kLevelShare = 0.25;     // of texels with x and y near 0: few others may follow each other more
+inline constexpr double kTwoVariance = 0.3;     // of x and y, unless curl shows a surface; noise over all codes: 0.67
+inline constexpr double kFewBehind = 0.0005;    // share of vectors with z below -0.1
+inline constexpr double kFewNull = 0.0001;      // of vectors without length, if alpha holds heights
+inline constexpr double kOtherUnit = 0.5;       // of vectors of unit length: grey around charts leaves more of them
+inline constexpr double kSurfaceCentred = 0.6;  // if curl shows that the slopes are those of a surface
+
 // -- of meshes, set on Suzanne (Blender) and the materials of FlightHelmet (Babylon's exporter) ----------------------
 inline constexpr double kTangentLength = 0.01;  // from 1: at most 0.0000002 there; 8-bit snorm: 0.007
 inline constexpr double kTangentSign = 0.01;    // of |w| from 1: 0 there, and in 8-bit snorm

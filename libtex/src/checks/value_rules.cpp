@@ -16,43 +16,18 @@ constexpr double kBelowShare = 0.0005;
 constexpr double kBeyondShare = 0.001;
 constexpr double kNullShare = 0.0001;
 constexpr double kNullShareBesideGrey = 0.002;  // if there is a background: what JPEG left of it far from its edge
-constexpr double kBehindShare = 0.05;
-constexpr double kGreyShare = 0.999;
-constexpr double kColorShare = 0.9;
-constexpr double kExtremeShare = 0.9;
-constexpr float kExtreme = 8.0f / 255.0f;  // of a stored channel: as near to 0 or 1 as metalness is
-// Of x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
-constexpr double kFarMean = 0.7;
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
 
-void set_texel(Finding& finding, int column, int row) {
-    finding.regions = {{0, column, row, 1, 1}};
-    finding.has_texel = true;
-    finding.column = column;
-    finding.row = row;
-}
-
-Finding& add_counted(const CheckContext& context, Findings& findings, std::string_view id, Property property,
-                     const std::string& what) {
-    const Tally& tally = context.counts[property];
-    const double share = context.counts.share(property);
-    Finding& finding = findings.add(
-        id, percent(share) + " of the texels" + what + ", the first at " + texel_text(tally.column, tally.row));
-    finding.figure = share;
-    finding.unit = "share";
-    set_texel(finding, tally.column, tally.row);
-    return finding;
-}
-
 void check_lengths(const CheckContext& context, Findings& findings) {
     const TexelCounts& counts = context.counts;
     if (counts[Property::not_finite].count > 0)
         add_counted(context, findings, "N204", Property::not_finite, " are NaN or infinite");
-    if (counts.share(Property::null_vector) > (context.background ? kNullShareBesideGrey : kNullShare)) {
+    if (counts.share(Property::null_vector) >
+        (context.background && context.background->texels > 0 ? kNullShareBesideGrey : kNullShare)) {
         add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
     if (!context.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
@@ -69,7 +44,7 @@ void check_lengths(const CheckContext& context, Findings& findings) {
 }
 
 void check_background(const CheckContext& context, Findings& findings) {
-    if (!context.background) return;
+    if (!context.background || context.background->texels == 0) return;
     const Background& background = *context.background;
     const Extent extent = context.stored.extent();
     const double share = static_cast<double>(background.texels) / static_cast<double>(extent.texels());
@@ -112,12 +87,6 @@ void check_channels(const CheckContext& context, Findings& findings) {
         return counts.high[static_cast<std::size_t>(channel)] - counts.low[static_cast<std::size_t>(channel)];
     };
     const int cx = stored.channel(Component::x), cy = stored.channel(Component::y), cz = stored.channel(Component::z);
-    if (cz >= 0 && counts.share(Property::grey) > kGreyShare && range(cx) > 0.0f) {
-        Finding& finding =
-            findings.add("N210", "R, G and B are equal in " + percent(counts.share(Property::grey)) + " of the texels");
-        finding.figure = counts.share(Property::grey);
-        finding.unit = "share";
-    }
     const auto is_filler = [&] {
         const float varies = std::max(range(cx), range(cy));
         if (range(cz) == 0.0f) return varies > 2.0f * kVaries;
@@ -133,42 +102,6 @@ void check_channels(const CheckContext& context, Findings& findings) {
     if (counts[Property::alpha_not_one].count > 0) {
         add_counted(context, findings, "N212", Property::alpha_not_one, " have A below 255");
     }
-    if (counts.share(Property::z_behind) > kBehindShare) {
-        add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
-        // Object-space maps hold unit vectors, although rounded or compressed ones.
-        if (!context.options.any_length && counts.share(Property::off_length) > kColorShare)
-            add_counted(context, findings, "N214", Property::off_length, " are off unit length by more than two codes");
-    }
-}
-
-// The share of values that are nearly 0 or 1.
-double extreme_share(const Plane<float>& channel) {
-    const Extent extent = channel.extent();
-    std::int64_t count = 0;
-    for (int j = 0; j < extent.height; ++j) {
-        const float* const row = channel.row(j);
-        for (int i = 0; i < extent.width; ++i) count += row[i] <= kExtreme || row[i] >= 1.0f - kExtreme ? 1 : 0;
-    }
-    return static_cast<double>(count) / static_cast<double>(extent.texels());
-}
-
-// Occlusion in red, roughness in green and metalness in blue: blue is 0 or 1, as no z is, and red is far from the 0.5
-// of an upright vector.
-void check_surface_data(const CheckContext& context, Findings& findings) {
-    const Stored& stored = context.stored;
-    if (context.constant || context.options.any_length || stored.is_signed || stored.swizzle[0] != Component::x ||
-        stored.swizzle[1] != Component::y || stored.swizzle[2] != Component::z)
-        return;
-    if (context.counts.share(Property::off_length) <= kColorShare || std::abs(context.counts.mean_x) <= kFarMean)
-        return;
-    const double share = extreme_share(context.base.planes[2]);
-    if (share < kExtremeShare) return;
-    Finding& finding =
-        findings.add("N216", "blue is nearly 0 or 1 in " + percent(share) + " of the texels, red is " +
-                                 decimal(0.5 + 0.5 * context.counts.mean_x, 2) + " in the mean, and " +
-                                 percent(context.counts.share(Property::off_length)) + " are off unit length");
-    finding.figure = share;
-    finding.unit = "share";
 }
 
 }  // namespace
@@ -183,7 +116,6 @@ void check_value_rules(const CheckContext& context, Findings& findings) {
     check_lengths(context, findings);
     check_means(context, findings);
     check_channels(context, findings);
-    check_surface_data(context, findings);
 }
 
 }  // namespace tex::inline v1

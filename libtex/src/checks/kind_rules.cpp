@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/kind_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace tex::inline v1 {
+namespace {
+
+constexpr double kGreyEverywhere = 0.999;
+constexpr double kBehindShare = 0.05;
+constexpr double kColorShare = 0.9;
+constexpr double kExtremeShare = 0.9;
+constexpr float kExtreme = 8.0f / 255.0f;  // of a stored channel: as near to 0 or 1 as metalness is
+// Of x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
+constexpr double kFarMean = 0.7;
+constexpr double kFarOffUnit = 0.25;  // of the length of a constant vector
+
+void add_share(Findings& findings, std::string_view id, std::string message, double share) {
+    Finding& finding = findings.add(id, std::move(message));
+    finding.figure = share;
+    finding.unit = "share";
+}
+
+// The share of values that are nearly 0 or 1.
+double extreme_share(const Plane<float>& channel) {
+    const Extent extent = channel.extent();
+    std::int64_t count = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        const float* const row = channel.row(j);
+        for (int i = 0; i < extent.width; ++i) count += row[i] <= kExtreme || row[i] >= 1.0f - kExtreme ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(extent.texels());
+}
+
+// Occlusion in red, roughness in green and metalness in blue: blue is 0 or 1, as no z is, and red is far from the 0.5
+// of an upright vector.
+bool check_surface_data(const CheckContext& context, Findings& findings) {
+    const Stored& stored = context.stored;
+    if (stored.swizzle[0] != Component::x || stored.swizzle[1] != Component::y || stored.swizzle[2] != Component::z)
+        return false;
+    const double off = context.counts.share(Property::off_length), mean = context.counts.mean_x;
+    if (off <= kColorShare || std::abs(mean) <= kFarMean) return false;
+    const double share = extreme_share(context.base.planes[2]);
+    if (share < kExtremeShare) return false;
+    add_share(findings, "N216",
+              "blue is nearly 0 or 1 in " + percent(share) + " of the texels, red is " + decimal(0.5 + 0.5 * mean, 2) +
+                  " in the mean, and " + percent(off) + " are off unit length",
+              share);
+    return true;
+}
+
+void add_grey(Findings& findings, double share) {
+    add_share(findings, "N210", "R, G and B are equal in " + percent(share) + " of the texels", share);
+}
+
+void check_no_map(const CheckContext& context, Findings& findings) {
+    const KindMeasure& measure = context.kind_measure;
+    const double grey = context.counts.share(Property::grey);
+    if (context.stored.has_z() && grey > kGreyEverywhere) {
+        add_grey(findings, grey);
+    } else if (!context.stored.has_z() && measure.grey > kGreyEverywhere) {
+        add_share(findings, "N210",
+                  "R, G and B are equal in " + percent(measure.grey) + " of the texels, and A is no x beside them",
+                  measure.grey);
+    } else if (!check_surface_data(context, findings)) {
+        const double unit = measure.as(Reading::as_stored).unit;
+        add_share(findings, "N214", evidence_text(measure), unit);
+    }
+}
+
+// All texels are the same, and no vector.
+void check_constant(const CheckContext& context, Findings& findings) {
+    if (context.options.any_length) return;
+    const double length = context.counts.mean_length;
+    if (std::abs(length - 1.0) <= kFarOffUnit || length < static_cast<double>(kNullLength)) return;
+    Finding& finding =
+        findings.add("N214", "every texel has the same colour, whose length as a vector is " + decimal(length, 2));
+    finding.figure = length;
+    finding.unit = "ratio";
+}
+
+// Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much
+// better: those of strong JPEG are a little better, too.
+bool holds_z_from_zero(const CheckContext& context) {
+    const KindMeasure& m = context.kind_measure;
+    constexpr double kUnit = 0.95, kBetter = 0.05, kMuchBetter = 0.25, kZRelated = 0.8;
+    const double unit = m.as(Reading::z_from_zero).unit, better = unit - m.as(Reading::as_stored).unit;
+    const bool is_better = m.behind > kBehindShare ? better > kBetter : context.sampled_ok && better > kMuchBetter;
+    return m.texels > 0 && unit > kUnit && is_better && m.z_correlation > kZRelated;
+}
+
+// z below 0 in many texels: why.
+void check_behind(const CheckContext& context, Findings& findings) {
+    const double share = context.counts.share(Property::z_behind);
+    const KindMeasure& m = context.kind_measure;
+    const bool from_zero = holds_z_from_zero(context);
+    if (share <= kBehindShare && !from_zero) return;
+    const KindMeasure::Vectors& v = m.as(Reading::as_stored);
+    constexpr double kCentred = 0.35, kInvertedShare = 0.9, kDown = -0.6, kUprightShare = 0.25, kRare = 0.1;
+    if (m.texels > 0 && share > kInvertedShare && v.off_centre() < kCentred && v.z < kDown) {
+        add_counted(context, findings, "N220", Property::z_behind, " point into the surface");
+    } else if (from_zero) {
+        add_share(findings, "N221",
+                  percent(m.as(Reading::z_from_zero).unit) +
+                      " of the vectors have about unit length if z is blue, and " + percent(v.unit) +
+                      " if it is 2 blue - 1",
+                  m.as(Reading::z_from_zero).unit);
+    } else if (m.texels == 0 || m.upright < kUprightShare || m.inverted > kRare * m.upright) {
+        add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
+        // Object-space maps hold unit vectors, although rounded or compressed ones.
+        if (!context.options.any_length && context.counts.share(Property::off_length) > kColorShare)
+            add_counted(context, findings, "N214", Property::off_length, " are off unit length by more than two codes");
+    }
+}
+
+}  // namespace
+
+void check_kind_rules(const CheckContext& context, Findings& findings) {
+    switch (context.kind) {
+        case Kind::no_map: return check_no_map(context, findings);
+        case Kind::x_lost:
+            findings.add("N222", "R and B are constant, and there is no alpha: G holds y, and nothing holds x");
+            return;
+        case Kind::x_ray: findings.add("N223", "A, B and G are unit vectors as x, y and z"); break;
+        case Kind::normals:
+        case Kind::two_components: break;
+    }
+    if (!context.has_vectors || !context.stored.has_z()) return;
+    // Components and lengths that do not matter leave this to be told: floats of heights.
+    if (const double grey = context.counts.share(Property::grey); grey > kGreyEverywhere && !context.constant)
+        add_grey(findings, grey);
+    if (context.constant)
+        check_constant(context, findings);
+    else
+        check_behind(context, findings);
+}
+
+}  // namespace tex::inline v1

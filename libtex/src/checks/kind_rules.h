@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// kind_rules.h: the rules that say what a picture holds, if it is not normals in tangent space: N210, N213, N214, N216,
+// N220 to N223.
+
+#pragma once
+
+#include "checks/findings.h"
+
+namespace tex::inline v1 {
+
+void check_kind_rules(const CheckContext& context, Findings& findings);
+
+}  // namespace tex::inline v1

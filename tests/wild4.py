@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# wild4.py BUILD [--files]: what check-normals finds in ../shared/data/wild4, beside the verdicts of labels.tsv.
+#
+# The first table has a row for each rule: in how many files it was found when the verdicts were made ("before") and is
+# found now, how many of these were judged false, and how many pictures without a verdict have it now alone. The second
+# has the files by kind, separately for the half that sets thresholds (the first byte of the SHA-256 of the name is
+# even) and for the half that is held out. With --files, all files whose errors and warnings differ follow.
+#
+# The exit status is 1 if a map has an error that its verdict calls false, if a map without a verdict has an error that
+# it did not have, or if a picture that is no normal map has none. Where the data are missing, it says so and passes.
+import collections
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+DATA = os.path.join(os.path.dirname(ROOT), "shared", "data", "wild4")
+
+
+def labels():
+    with open(os.path.join(DATA, "labels.tsv"), encoding="utf-8") as file:
+        names = next(file).rstrip("\n").split("\t")
+        for line in file:
+            yield dict(zip(names, line.rstrip("\n").split("\t")))
+
+
+def findings_now(build, files):
+    with tempfile.NamedTemporaryFile("w", suffix=".txt") as names:
+        names.write("".join(os.path.join(DATA, file) + "\n" for file in files))
+        names.flush()
+        command = [os.path.join(build, "check-normals"), "--json", "--files-from", names.name]
+        output = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    found = {}
+    for line in output.splitlines():
+        report = json.loads(line)
+        if "input" in report:
+            found[os.path.relpath(report["input"], DATA)] = {
+                finding["id"] + finding["severity"][0] for finding in report["findings"]}
+    return found
+
+
+def is_tune(file):
+    return hashlib.sha256(os.path.basename(file).encode()).digest()[0] % 2 == 0
+
+
+def main():
+    if not os.path.isdir(DATA):
+        print("skipped: there is no ../shared/data/wild4")
+        return 0
+    rows = list(labels())
+    now = findings_now(sys.argv[1], [row["file"] for row in rows])
+    rules = collections.defaultdict(collections.Counter)
+    kinds = collections.defaultdict(collections.Counter)
+    bad, changed = [], []
+    for row in rows:
+        file, verdict = row["file"], row["verdict"]
+        before = set(row["findings of 3bb4925e"].split())
+        after = {finding for finding in now.get(file, set()) if finding[-1] != "n"}
+        is_picture = verdict.startswith("must be an error")
+        false = {part.split()[0] for part in verdict.split(";") if " false" in part or " wrong words" in part}
+        for finding in before | after:
+            rule = rules[finding]
+            rule["before"] += finding in before
+            rule["now"] += finding in after
+            rule["false before"] += finding[:-1] in false and finding in before
+            rule["false now"] += finding[:-1] in false and finding in after
+            rule["new"] += not is_picture and finding in after and finding not in before
+        has_error = any(finding[-1] == "e" for finding in after)
+        part = kinds["picture" if is_picture else row["kind"], "tune" if is_tune(file) else "held out"]
+        part["files"] += 1
+        part["error"] += has_error
+        part["warning"] += any(finding[-1] == "w" for finding in after)
+        wrong = is_picture and not has_error or any(
+            finding[-1] == "e" and (finding[:-1] in false or finding not in before) for finding in after
+            if not is_picture and row["kind"] != "data")
+        part["wrong"] += wrong
+        if wrong:
+            bad.append(file)
+        if before != after:
+            changed.append((file, before, after, verdict))
+    columns = ["before", "now", "false before", "false now", "new"]
+    print(f"{'finding':10}" + "".join(f"{name:>14}" for name in columns))
+    for finding in sorted(rules):
+        print(f"{finding:10}" + "".join(f"{rules[finding][name]:14}" for name in columns))
+    print(f"\n{'kind':22}" + "".join(f"{name:>10}" for name in ["files", "error", "warning", "wrong"]))
+    for kind in sorted(kinds):
+        part = kinds[kind]
+        print(f"{kind[0] + ', ' + kind[1]:22}" +
+              "".join(f"{part[name]:10}" for name in ["files", "error", "warning", "wrong"]))
+    if "--files" in sys.argv:
+        print()
+        for file, before, after, verdict in changed:
+            print(f"{file}: {' '.join(sorted(before)) or '-'} -> {' '.join(sorted(after)) or '-'}  ({verdict})")
+    for file in bad:
+        print("wrong:", file, " ".join(sorted(now.get(file, set()))))
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
