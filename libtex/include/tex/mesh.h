@@ -534,8 +534,9 @@ struct ConvertedMap {
 // between two triangles with a common edge. Among triangles at the same distance, the first one wins.
 //
 // At the hit, n is the normalised interpolated normal of the high mesh, or the triangle's own where the high mesh has
-// none, or what HighDetail::normals say in the tangent space of the high mesh. The texel's vector is the normalised sum
-// of its samples that hit, converted to tangent space at the texel's centre by the decoder, or at the
+// none, or what HighDetail::normals say in the tangent space of the high mesh. With `backfaces`, n of a triangle that
+// is seen from behind is turned round if it is on the side that the triangle faces. The texel's vector is the
+// normalised sum of its samples that hit, converted to tangent space at the texel's centre by the decoder, or at the
 // covered sample nearest to it. A texel is *missed* if triangles of the low mesh cover it, but no ray hits.
 //
 // Second rays start at each hit of a sample, N = rays_per_hit of them, in directions about n (about the triangle's own

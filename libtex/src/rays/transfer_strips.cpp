@@ -177,3 +177,10 @@ void TransferStrips::find_normals(Strip& strip) const {
 }
 
 }  // namespace tex::inline v1
+    if (!scene_.backfaces) return;
+    std::size_t hit = 0;
+    for (const RayEnd& ray : strip.ends) {
+        if (ray.triangle == kNoHit) continue;
+        if (ray.behind) strip.normals.turn(hit, HighSurface::face_normal(strip.normals.triangle(hit)));
+        ++hit;
+    }
