@@ -260,13 +260,20 @@ struct SelectedPart {
 [[nodiscard]] TEX_API Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
                                                        const Execution& execution = {});
 
+// The most triangles that copies of parts make, if the caller does not allow more: about 3 GB in transfer().
+inline constexpr std::size_t kMaxCopied = std::size_t{1} << 24;
+
 // All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
 // no nodes at all. Parts that no node shows are left out. Each is called as its node is, if that has a name.
 //
+// A small file can show a mesh in a million places. So copies are counted before any is made: if a part is shown more
+// than once, all together may have `most` triangles, where a copy of a part counts as 16 or more.
+//
 // Preconditions (asserted): every part passes check_part().
 // Errors: bad_data     as in_scene(), or no node shows a part
+//         unsupported  the nodes make too many copies
 //         out_of_memory
-[[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh);
+[[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh, std::size_t most = kMaxCopied);
 
 // Which names belong together: numbers for TransferInputs.
 struct MatchedNames {
