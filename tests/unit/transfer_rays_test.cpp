@@ -11,6 +11,7 @@
 
 #include "mesh/vectors.h"
 #include "rays/ray_directions.h"
+#include "rays/ray_work.h"
 #include "unit/mesh_pictures.h"
 #include "unit/solids.h"
 #include "unit/transfers.h"
@@ -168,7 +169,8 @@ TEST(Transfer, DirectionsOfRaysAreContinuous) {
                         on_a[a % 3] = on_b[b_next % 3] = 1.0 - k;
                         on_a[a_next % 3] = on_b[b % 3] = k;
                         const Vector3 p = (1.0 - k) * vector_of(at(a)) + k * vector_of(at(a_next));
-                        const Vector3 gap = directions->at(a / 3, on_a, p) - directions->at(b / 3, on_b, p);
+                        RayWork work;
+                        const Vector3 gap = directions->at(a / 3, on_a, p, work) - directions->at(b / 3, on_b, p, work);
                         ASSERT_LT(dot(gap, gap), 1e-20);
                     }
                 }

@@ -719,8 +719,11 @@ struct TransferInputs {
 //                      empty; no ray hits anything (the reason says how far apart the meshes are); the cage has other
 //                      triangles; a skew or offset is empty, negative or not finite; groups, ids or details do not fit
 //                      the meshes
-//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`
+//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`; so many triangles lie over
+//                      each other, or are so long and thin, that rays would be tested against thousands of them: on
+//                      average, 512 rays in a row take more than 4096 looks at boxes or at four triangles
 //         out_of_memory, cancelled
+// The time of a ray is limited by that, whatever the meshes are. Copies of a triangle cost nothing.
 // The same bytes for every number of threads, processor and compiler.
 // Memory: 13 bytes for each texel, 12 more for object space, positions, bent normals and colours, 4 for heights,
 // occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice

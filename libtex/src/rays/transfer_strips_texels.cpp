@@ -131,9 +131,9 @@ void TransferStrips::miss_texel(Strip& strip, int i, int j, std::size_t begin) c
     result_.map.x.at(i, j) = kNoNormal;
     ++strip.missed;
     const int group = strip.samples[begin].group;
-    const RayEnd line = group == RayGroups::kNone
-                            ? RayEnd{}
-                            : scene_.casters[static_cast<std::size_t>(group)].cast_line(strip.starts[begin]);
+    const RayEnd line = group == RayGroups::kNone ? RayEnd{}
+                                                  : scene_.casters[static_cast<std::size_t>(group)].cast_line(
+                                                        strip.starts[begin], strip.casts.work);
     if (line.triangle == kNoHit)
         ++strip.hopeless;
     else
