@@ -5,7 +5,11 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <list>
+#include <string>
 
 #include "meshes.h"
 #include "modules.h"
@@ -221,13 +225,18 @@ std::vector<std::string> names_from(py::handle given, std::string_view name) {
 }
 
 void add_helpers(Module& module) {
-    module.verb<>("parts_in_scene", {{"mesh", "Mesh"}}, "list[MeshPart]", "", [](Call& call) -> py::object {
-        const Mesh& mesh = mesh_from(call["mesh"], "mesh");
-        py::list list;
-        for (MeshPart& part : value_of(without_gil([&] { return parts_in_scene(mesh); })))
-            list.append(py::cast(std::make_shared<MeshPart>(std::move(part))));
-        return list;
-    });
+    module.verb<>("parts_in_scene", {{"mesh", "Mesh"}, {"most", "int", std::to_string(kMaxCopied)}}, "list[MeshPart]",
+                  "", [](Call& call) -> py::object {
+                      const Mesh& mesh = mesh_from(call["mesh"], "mesh");
+                      std::size_t most = kMaxCopied;
+                      if (call.has("most"))
+                          most = static_cast<std::size_t>(
+                              std::max<std::int64_t>(0, Convert<std::int64_t>::from(call["most"], "most")));
+                      py::list list;
+                      for (MeshPart& part : value_of(without_gil([&] { return parts_in_scene(mesh, most); })))
+                          list.append(py::cast(std::make_shared<MeshPart>(std::move(part))));
+                      return list;
+                  });
     module.verb<>("match_names", {{"low", "Sequence[str]"}, {"high", "Sequence[str]"}}, "dict[str, Any]",
                   "A dict of the fields of MatchedNames.", [](Call& call) -> py::object {
                       const MatchedNames matched =

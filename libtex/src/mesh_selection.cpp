@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "mesh/part_names.h"
+#include "mesh/shown_parts.h"
 #include "mesh/uv_tiles.h"
 #include "mesh/uv_transform.h"
 #include "rows/usable.h"
@@ -310,15 +311,14 @@ Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selectio
     });
 }
 
-Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh) {
+Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh, std::size_t most) {
     return no_throw([&]() -> Result<std::vector<MeshPart>> {
         if (mesh.nodes.empty()) return std::move(mesh.parts);
+        const ShownParts shown(mesh);
+        if (auto fits = shown.check(most); !fits) return fits.error();
         std::vector<MeshPart> parts;
         for (MeshPart& part : mesh.parts) {
-            std::vector<const MeshNode*> nodes;
-            for (const MeshNode& node : mesh.nodes) {
-                if (node.mesh == part.mesh) nodes.push_back(&node);
-            }
+            const std::vector<const MeshNode*>& nodes = shown.nodes_of(part);
             for (std::size_t k = 0; k < nodes.size(); ++k) {
                 auto in_place = in_scene(k + 1 < nodes.size() ? MeshPart(part) : std::move(part), *nodes[k]);
                 if (!in_place) return in_place.error();

@@ -169,6 +169,9 @@ void make_room(Extent extent, const TransferOptions& options, TransferredMaps& r
 Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,
                                  const TransferInputs& inputs, const TransferOptions& options,
                                  const Execution& execution) {
+    const int n = options.subsamples;
+    const auto coverage = CoverageMap::make(low.part, low.uv_set, {extent.width * n, extent.height * n}, 0, n);
+    if (!coverage) return coverage.error().of(low.file);
     const auto groups = RayGroups::make(low.part, high, inputs, options.has_second_rays(), execution, {0.0, 0.1});
     if (!groups) return groups.error();
     TransferredMaps result;
@@ -180,14 +183,12 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     const auto directions = RayDirections::make(whole, options.rays, width, options.straight_angle, execution);
     if (!directions) return directions.error();
     const MeshPart& reaching = groups->has_all() ? whole : low.part;
-    if (auto set = set_reach(reaching, *directions, *groups, options, execution, result); !set) return set.error();
+    if (auto set = set_reach(reaching, *directions, *groups, options, execution, result); !set)
+        return set.error().of(low.file);
     const RayStarts starts(*directions, inputs, result.front, result.diagonal);
     const HighSurface surface(high, inputs);
     result.front = starts.farthest(low.part);
 
-    const int n = options.subsamples;
-    const auto coverage = CoverageMap::make(low.part, low.uv_set, {extent.width * n, extent.height * n}, 0, n);
-    if (!coverage) return coverage.error().of(low.file);
     make_room(extent, options, result);
     if (surface.has_ids()) result.ids = Plane<std::int32_t>(extent);
     if (surface.has_colors()) result.color = colors_of(extent);
@@ -208,6 +209,7 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
         for (int strip = begin; strip < end; ++strip) strips.run(strip);
     };
     if (auto done = parallel_for(execution, coverage->strips(), 1, run, {0.1, 0.9}); !done) return done.error();
+    if (auto fair = strips.check(); !fair) return fair.error().of(low.file);
     if (result.covered == 0) return Error{ErrorCode::bad_option, low.file, "its triangles cover no texel of the map"};
     if (result.covered == result.missed) return no_hit(low, *groups, inputs.cage != nullptr, result);
     strips.finish();

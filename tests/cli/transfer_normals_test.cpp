@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "cli/transfer_fixture.h"
+#include "unit/gltf_files.h"
 
 namespace tex::cli {
 namespace {
@@ -26,6 +29,20 @@ TEST_F(TransferNormals, MakesEveryFileThatPackNormalsMakes) {
     const Ran piped = run(scratch_, "transfer-normals",
                           {"crate_low.glb", "crate_high.glb", "-o", "-", "--container", "png", "--extent", "96"});
     EXPECT_EQ(piped.out, scratch_.read("n.png"));
+}
+
+// Nodes that show a mesh again and again multiply its triangles.
+TEST_F(TransferNormals, LimitsWhatNodesMultiply) {
+    GltfMaker maker;
+    const int positions = maker.add(std::vector<float>{-9, -9, 0, 9, -9, 0, 0, 9, 0}, "VEC3", 5126);
+    std::string nodes = "{\"mesh\":0}";
+    for (int k = 1; k < 100; ++k) nodes += ",{\"mesh\":0}";
+    scratch_.write("high.glb", maker.glb("{\"attributes\":{\"POSITION\":" + std::to_string(positions) + "}}",
+                                         ",\"nodes\":[" + nodes + "]"));
+    refuses({"sheet.obj", "high.glb", "-o", "n.png", "--max-triangles", "1K"}, 4,
+            "high.glb: its 100 nodes make 100 triangles of 1: too many copies; --max-triangles allows more than 1K");
+    does({"sheet.obj", "high.glb", "-o", "n.png", "--max-triangles", "2K", "--front", "1", "--back", "1"});
+    does({"sheet.obj", "high.glb", "-o", "n.png", "--front", "1", "--back", "1"});
 }
 
 // The library makes the same maps of the same files.

@@ -160,6 +160,24 @@ TEST(MeshSelection, PlacesAllPartsOnceForEachNode) {
     EXPECT_EQ(parts_in_scene(mesh)->size(), 3u);
 }
 
+TEST(MeshSelection, CountsCopiesBeforeItMakesThem) {
+    Mesh mesh = two_meshes();
+    EXPECT_EQ(parts_in_scene(mesh, 132)->size(), 6u);
+    EXPECT_EQ(parts_in_scene(mesh, 131).error().code, ErrorCode::unsupported);
+    const MeshNode node = mesh.nodes[0];
+    mesh.nodes.assign(600000, node);
+    const auto many = parts_in_scene(mesh);
+    ASSERT_FALSE(many);
+    EXPECT_EQ(many.error().reason, "its 600000 nodes make 15600000 triangles of 58: too many copies");
+    mesh.parts[0].indices.resize(3);  // a copy counts as 16 triangles
+    mesh.parts.resize(1);
+    mesh.nodes.resize(11);
+    EXPECT_EQ(parts_in_scene(mesh, 176)->size(), 11u);
+    EXPECT_FALSE(parts_in_scene(mesh, 175));
+    mesh.nodes.resize(1);  // what is shown once has no limit
+    EXPECT_EQ(parts_in_scene(mesh, 0)->size(), 1u);
+}
+
 TEST(MeshSelection, MatchesNamesByTheirStems) {
     const auto number = [](const std::string& low, const std::string& high) {
         const MatchedNames matched = match_names({low}, {high});

@@ -294,8 +294,8 @@ TEST(BoxTree, FindsTheNearestPoint) {
             const double wanted = reference::nearest_squared(triangles, p);
             const NearestPoint found = tree->nearest({p[0], p[1], p[2]});
             EXPECT_NEAR(std::sqrt(found.squared), std::sqrt(wanted), 1e-6);
-            EXPECT_NE(tree->any_within({p[0], p[1], p[2]}, found.squared), kNoHit);
-            EXPECT_EQ(tree->any_within({p[0], p[1], p[2]}, 0.999 * found.squared), kNoHit);
+            EXPECT_NE(tree->any_within({p[0], p[1], p[2]}, found.squared).triangle, kNoHit);
+            EXPECT_EQ(tree->any_within({p[0], p[1], p[2]}, 0.999 * found.squared).triangle, kNoHit);
             EXPECT_EQ(tree->nearest({p[0], p[1], p[2]}, 0.99 * found.squared).triangle, kNoHit);
         }
     }

@@ -11,6 +11,9 @@
 
 #include "mesh/vectors.h"
 #include "rays/ray_directions.h"
+#include "rays/ray_work.h"
+#include "unit/mesh_pictures.h"
+#include "unit/solids.h"
 #include "unit/transfers.h"
 
 namespace tex {
@@ -72,6 +75,30 @@ TEST(Transfer, CountsWhatIsMissedAndSaysWhatWouldHit) {
     EXPECT_EQ(behind->behind, 768);
     options.backfaces = true;
     EXPECT_EQ(transferred(low, high, extent, options)->behind, 1024);
+}
+
+// Around the sphere of radius 1 is another one, which is inside out. Of its normals, those stay that point outwards.
+TEST(Transfer, BackFacesPointTowardsTheRay) {
+    const MeshPart low = sphere().part;
+    const MeshPart high = fine_sphere(64).part;
+    TransferOptions options = all_maps();
+    options.backfaces = true;
+    options.front = options.back = {Reach::Unit::absolute, 0.5};
+    for (const bool inwards : {false, true}) {
+        for (const bool stored : {false, true}) {
+            MeshPart turned = inside_out(high);
+            if (!stored) turned.normals.clear();
+            for (Float3& n : turned.normals) n = inwards ? Float3{-n.x, -n.y, -n.z} : n;
+            const auto maps = transferred(low, only(turned), {64, 32}, options);
+            ASSERT_TRUE(maps);
+            EXPECT_EQ(maps->missed, 0);
+            EXPECT_EQ(maps->backward, 0);
+            const auto hits = for_hits(*maps, [&](int i, int j) {
+                ASSERT_LT(degrees_between(vector_at(maps->object, i, j), unit_vector(position_at(*maps, i, j))), 3.0);
+            });
+            EXPECT_GT(hits, 1000);
+        }
+    }
 }
 
 float side_of_skew(const TransferredMaps& maps, const TransferredMaps& starts, int i, int j) {
@@ -142,7 +169,8 @@ TEST(Transfer, DirectionsOfRaysAreContinuous) {
                         on_a[a % 3] = on_b[b_next % 3] = 1.0 - k;
                         on_a[a_next % 3] = on_b[b % 3] = k;
                         const Vector3 p = (1.0 - k) * vector_of(at(a)) + k * vector_of(at(a_next));
-                        const Vector3 gap = directions->at(a / 3, on_a, p) - directions->at(b / 3, on_b, p);
+                        RayWork work;
+                        const Vector3 gap = directions->at(a / 3, on_a, p, work) - directions->at(b / 3, on_b, p, work);
                         ASSERT_LT(dot(gap, gap), 1e-20);
                     }
                 }

@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "cli/value.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -42,6 +43,10 @@ void HighMeshes::add(Command& command) {
     row.repeatable = true;
     row.preset = "the inputs after the first one";
     command.choice(match_, "--match", "M", kMatchNames, "which parts of both meshes belong together");
+    command
+        .option("--max-triangles", "N", "the most triangles that nodes may make by showing meshes more than once",
+                [this](const std::string& text) { most_ = parse_count(text); })
+        .preset = count_text(most_);
 }
 
 std::vector<std::string> HighMeshes::buffers_of(const std::vector<std::string>& meshes) {
@@ -92,7 +97,7 @@ Result<std::shared_ptr<const HighParts>> HighMeshes::read(Job& job, const Wanted
 }
 
 Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const ReadOptions& options,
-                                   const Wanted& wanted) {
+                                   const Wanted& wanted) const {
     HighParts high;
     MeshReadOptions how;
     how.reader = options;
@@ -108,8 +113,8 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
             part.tangents.clear();
         }
         const std::vector<MeshMaterial> materials = mesh->materials;
-        auto placed = parts_in_scene(std::move(*mesh));
-        if (!placed) return placed.error().of(name);
+        auto placed = parts_in_scene(std::move(*mesh), static_cast<std::size_t>(most_));
+        if (!placed) return with_limit(placed.error()).of(name);
         for (MeshPart& part : *placed) {
             const bool has_material = part.material >= 0 && static_cast<std::size_t>(part.material) < materials.size();
             high.materials.push_back(has_material ? materials[static_cast<std::size_t>(part.material)].name : "");
@@ -153,6 +158,11 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
         inputs.low_groups.resize(end, matched.low[k]);
     }
     return {};
+}
+
+Error HighMeshes::with_limit(const Error& error) const {
+    if (error.code != ErrorCode::unsupported) return error;
+    return {error.code, error.file, error.reason + "; --max-triangles allows more than " + count_text(most_)};
 }
 
 Error HighMeshes::with_order(const Error& error) {

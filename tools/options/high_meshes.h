@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // high_meshes.h: the option group of the meshes that rays hit: --high, or the inputs after the first one;
-// --match.
+// --match, --max-triangles.
 
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -71,12 +72,15 @@ public:
     static void compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high);
 
 private:
+    // An error of parts_in_scene(), with the remedy if there are too many copies.
+    [[nodiscard]] Error with_limit(const Error& error) const;
     [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
-    [[nodiscard]] static Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
-                                                const Wanted& wanted);
+    [[nodiscard]] Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
+                                         const Wanted& wanted) const;
 
     std::vector<std::string> patterns_;
     Match match_ = Match::all;
+    std::int64_t most_ = kMaxCopied;
     mutable std::mutex mutex_;
     // What was read last for a tile, and the states of its files before.
     mutable std::shared_ptr<const HighParts> last_;

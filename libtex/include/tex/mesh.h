@@ -260,13 +260,20 @@ struct SelectedPart {
 [[nodiscard]] TEX_API Result<SelectedPart> select_part(const Mesh& mesh, const MeshSelection& selection,
                                                        const Execution& execution = {});
 
+// The most triangles that copies of parts make, if the caller does not allow more: about 3 GB in transfer().
+inline constexpr std::size_t kMaxCopied = std::size_t{1} << 24;
+
 // All parts as the nodes of the scene place them: once for each node that shows them; in their own space if there are
 // no nodes at all. Parts that no node shows are left out. Each is called as its node is, if that has a name.
 //
+// A small file can show a mesh in a million places. So copies are counted before any is made: if a part is shown more
+// than once, all together may have `most` triangles, where a copy of a part counts as 16 or more.
+//
 // Preconditions (asserted): every part passes check_part().
 // Errors: bad_data     as in_scene(), or no node shows a part
+//         unsupported  the nodes make too many copies
 //         out_of_memory
-[[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh);
+[[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh, std::size_t most = kMaxCopied);
 
 // Which names belong together: numbers for TransferInputs.
 struct MatchedNames {
@@ -534,8 +541,9 @@ struct ConvertedMap {
 // between two triangles with a common edge. Among triangles at the same distance, the first one wins.
 //
 // At the hit, n is the normalised interpolated normal of the high mesh, or the triangle's own where the high mesh has
-// none, or what HighDetail::normals say in the tangent space of the high mesh. The texel's vector is the normalised sum
-// of its samples that hit, converted to tangent space at the texel's centre by the decoder, or at the
+// none, or what HighDetail::normals say in the tangent space of the high mesh. With `backfaces`, n of a triangle that
+// is seen from behind is turned round if it is on the side that the triangle faces. The texel's vector is the
+// normalised sum of its samples that hit, converted to tangent space at the texel's centre by the decoder, or at the
 // covered sample nearest to it. A texel is *missed* if triangles of the low mesh cover it, but no ray hits.
 //
 // Second rays start at each hit of a sample, N = rays_per_hit of them, in directions about n (about the triangle's own
@@ -711,8 +719,11 @@ struct TransferInputs {
 //                      empty; no ray hits anything (the reason says how far apart the meshes are); the cage has other
 //                      triangles; a skew or offset is empty, negative or not finite; groups, ids or details do not fit
 //                      the meshes
-//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`
+//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`; so many triangles lie over
+//                      each other, or are so long and thin, that rays would be tested against thousands of them: on
+//                      average, 512 rays in a row take more than 4096 looks at boxes or at four triangles
 //         out_of_memory, cancelled
+// The time of a ray is limited by that, whatever the meshes are. Copies of a triangle cost nothing.
 // The same bytes for every number of threads, processor and compiler.
 // Memory: 13 bytes for each texel, 12 more for object space, positions, bent normals and colours, 4 for heights,
 // occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice

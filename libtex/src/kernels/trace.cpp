@@ -20,18 +20,21 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Finds the nearest hit, or with kAny any. Precondition: hit.t is the length of the ray if nothing was hit before.
+// Finds the nearest hit, or with kAny any. Returns the steps. Precondition: hit.t is the length of the ray if nothing
+// was hit before.
 template <bool kAny>
-HWY_INLINE void search(const TreeView& tree, const Ray& ray, const EdgeRay& edge, BoxRay& box, RayHit& hit) {
+HWY_INLINE std::int64_t search(const TreeView& tree, const Ray& ray, const EdgeRay& edge, BoxRay& box, RayHit& hit) {
     Waiting stack[(kBoxes - 1) * kMostLevels + kBoxes + 1];
     Waiting* top = stack;
     *top++ = {0.0f, 0};
+    std::int64_t steps = 0;
     while (top > stack) {
         const Waiting next = *--top;
         if (next.enter > box.most) continue;
+        ++steps;
         if ((next.child & kGroupBit) != 0) {
             if (!hit_group(tree.groups[next.child & ~kGroupBit], ray, edge, hit)) continue;
-            if (kAny) return;
+            if (kAny) return steps;
             box.shorten(hit.t);
             continue;
         }
@@ -39,15 +42,16 @@ HWY_INLINE void search(const TreeView& tree, const Ray& ray, const EdgeRay& edge
         const unsigned met = boxes_met(tree.boxes[next.child], box, enter);
         top = push(met, enter, top, [&](int k) HWY_ATTR { return tree.boxes[next.child].child[k]; });
     }
+    return steps;
 }
 
 template <bool kAny>
-HWY_INLINE RayHit trace(const TreeView& tree, const Ray& ray) {
+HWY_INLINE RayHit trace(const TreeView& tree, const Ray& ray, std::int64_t& steps) {
     RayHit hit;
     BoxRay box;
     if (!prepare(tree, ray, box)) return hit;
     hit.t = ray.length;
-    search<kAny>(tree, ray, sheared(ray), box, hit);
+    steps += search<kAny>(tree, ray, sheared(ray), box, hit);
     if (hit.triangle == kNoHit) hit.t = 0.0;
     return hit;
 }
@@ -57,7 +61,7 @@ constexpr int kMostBoxes = 64;
 
 // Returns false if the rays have too little in common; then some of their hits are still to be found.
 HWY_INLINE bool search_together(const TreeView& tree, const Ray* rays, const EdgeRay* edges, BoxRay* boxes,
-                                Packet& packet, RayHit* hits) {
+                                Packet& packet, RayHit* hits, std::int64_t& steps) {
     // Children of boxes: eight times the index of a box and the number of a child. The tree itself is one.
     Waiting stack[(kBoxes - 1) * kMostLevels + kBoxes + 1];
     Waiting* top = stack;
@@ -68,9 +72,11 @@ HWY_INLINE bool search_together(const TreeView& tree, const Ray* rays, const Edg
         top = push(met, enter, top, [&](int k) HWY_ATTR { return kBoxes * index + static_cast<std::uint32_t>(k); });
     };
     open(0);
+    ++steps;
     for (int opened = 0; top > stack;) {
         const Waiting next = *--top;
         if (next.enter > packet.longest) continue;
+        ++steps;
         const Boxes& parent = tree.boxes[next.child / kBoxes];
         const std::uint32_t child = parent.child[next.child % kBoxes];
         if ((child & kGroupBit) == 0) {
@@ -94,7 +100,7 @@ HWY_INLINE bool search_together(const TreeView& tree, const Ray* rays, const Edg
 }
 
 // Returns whether the rays went together.
-HWY_INLINE bool trace_packet(const TreeView& tree, const Ray* rays, RayHit* hits) {
+HWY_INLINE bool trace_packet(const TreeView& tree, const Ray* rays, RayHit* hits, std::int64_t& steps) {
     BoxRay boxes[kPacket];
     EdgeRay edges[kPacket];
     Packet packet;
@@ -107,27 +113,32 @@ HWY_INLINE bool trace_packet(const TreeView& tree, const Ray* rays, RayHit* hits
         hits[k] = {};
         hits[k].t = rays[k].length;
     }
-    const bool together = search_together(tree, rays, edges, boxes, packet, hits);
+    const bool together = search_together(tree, rays, edges, boxes, packet, hits, steps);
     for (int k = 0; k < kPacket; ++k) {
-        if (!together) search<false>(tree, rays[k], edges[k], boxes[k], hits[k]);
+        if (!together) steps += search<false>(tree, rays[k], edges[k], boxes[k], hits[k]);
         if (hits[k].triangle == kNoHit) hits[k].t = 0.0;
     }
     return true;
 }
 
-void TraceRays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
+std::int64_t TraceRays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
+    std::int64_t steps = 0;
     std::size_t k = 0;
     while (k < count) {
-        if (count - k >= kPacket && trace_packet(tree, rays + k, hits + k)) {
+        if (count - k >= kPacket && trace_packet(tree, rays + k, hits + k, steps)) {
             k += kPacket;
             continue;
         }
-        for (const std::size_t end = std::min(count, k + kPacket); k < end; ++k) hits[k] = trace<false>(tree, rays[k]);
+        for (const std::size_t end = std::min(count, k + kPacket); k < end; ++k)
+            hits[k] = trace<false>(tree, rays[k], steps);
     }
+    return steps;
 }
 
-void FindBlocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
-    for (std::size_t k = 0; k < count; ++k) blocked[k] = trace<true>(tree, rays[k]).triangle != kNoHit ? 1 : 0;
+std::int64_t FindBlocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
+    std::int64_t steps = 0;
+    for (std::size_t k = 0; k < count; ++k) blocked[k] = trace<true>(tree, rays[k], steps).triangle != kNoHit ? 1 : 0;
+    return steps;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -140,12 +151,12 @@ namespace tex::inline v1 {
 HWY_EXPORT(TraceRays);
 HWY_EXPORT(FindBlocked);
 
-void trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
-    HWY_DYNAMIC_DISPATCH(TraceRays)(tree, rays, count, hits);
+std::int64_t trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
+    return HWY_DYNAMIC_DISPATCH(TraceRays)(tree, rays, count, hits);
 }
 
-void find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
-    HWY_DYNAMIC_DISPATCH(FindBlocked)(tree, rays, count, blocked);
+std::int64_t find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
+    return HWY_DYNAMIC_DISPATCH(FindBlocked)(tree, rays, count, blocked);
 }
 
 }  // namespace tex::inline v1

@@ -55,16 +55,9 @@ void choose_cut(const Bin* bins, int axis, Cut& best) {
     }
 }
 
-// A box around twice the centres. If there are many, they fill nearly all of their box, and are not looked at.
+// A box around twice the centres.
 FloatBox bounds_of_centers(const BoxedTriangle* boxes, const BoxRange& range) {
     FloatBox bounds;
-    if (range.count() > kMany) {
-        for (int axis = 0; axis < 3; ++axis) {
-            bounds.low[axis] = 2.0f * range.box.low[axis];
-            bounds.high[axis] = 2.0f * range.box.high[axis];
-        }
-        return bounds;
-    }
     for (std::size_t k = range.begin; k < range.end; ++k) {
         for (int axis = 0; axis < 3; ++axis) {
             bounds.low[axis] = std::min(bounds.low[axis], boxes[k].center(axis));
@@ -74,33 +67,29 @@ FloatBox bounds_of_centers(const BoxedTriangle* boxes, const BoxRange& range) {
     return bounds;
 }
 
-// The axes along which cuts are tried: all, or the longest one if there are many centres.
-std::pair<int, int> axes_of(const FloatBox& centers, const BoxRange& range) {
-    if (range.count() <= kMany) return {0, 2};
+// Around the boxes, twice as large. If there are many, their centres fill nearly all of it.
+FloatBox bounds_of_boxes(const BoxRange& range) {
+    FloatBox bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+        bounds.low[axis] = 2.0f * range.box.low[axis];
+        bounds.high[axis] = 2.0f * range.box.high[axis];
+    }
+    return bounds;
+}
+
+int longest_axis(const FloatBox& box) {
     int longest = 0;
     for (int axis = 1; axis < 3; ++axis) {
-        if (centers.high[axis] - centers.low[axis] > centers.high[longest] - centers.low[longest]) longest = axis;
+        if (box.high[axis] - box.low[axis] > box.high[longest] - box.low[longest]) longest = axis;
     }
-    return {longest, longest};
+    return longest;
 }
 
-void halve(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
-    const std::size_t middle = range.begin + range.count() / 2;
-    left = {range.begin, middle, {}};
-    right = {middle, range.end, {}};
-    for (BoxRange* half : {&left, &right}) {
-        for (std::size_t k = half->begin; k < half->end; ++k) half->box.include(boxes[k].box);
-    }
-}
-
-}  // namespace
-
-void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right) {
-    if (by_order) return halve(boxes, range, left, right);
-    const FloatBox centers = bounds_of_centers(boxes, range);
+// Cuts along these axes, of which `centers` are the bounds. Returns false if all centres are in one bin of each.
+bool cut_along(BoxedTriangle* boxes, const BoxRange& range, const FloatBox& centers, int first_axis, int last_axis,
+               BoxRange& left, BoxRange& right) {
     const BinScale scales[3] = {
         {centers.low[0], centers.high[0]}, {centers.low[1], centers.high[1]}, {centers.low[2], centers.high[2]}};
-    const auto [first_axis, last_axis] = axes_of(centers, range);
     Bin bins[3][kBins];
     for (int axis = first_axis; axis <= last_axis; ++axis) {
         const BinScale scale = scales[axis];
@@ -112,7 +101,7 @@ void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRa
     }
     Cut cut;
     for (int axis = first_axis; axis <= last_axis; ++axis) choose_cut(bins[axis], axis, cut);
-    if (cut.axis < 0) return halve(boxes, range, left, right);
+    if (cut.axis < 0) return false;
     std::size_t first = range.begin, last = range.end;
     while (first < last) {
         if (scales[cut.axis].bin(boxes[first].center(cut.axis)) < cut.bin)
@@ -120,9 +109,31 @@ void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRa
         else
             std::swap(boxes[first], boxes[--last]);
     }
-    left = {range.begin, first, {}};
-    right = {first, range.end, {}};
+    left = {range.begin, first, {}, range.may_have_copies};
+    right = {first, range.end, {}, range.may_have_copies};
     for (int k = 0; k < kBins; ++k) (k < cut.bin ? left : right).box.include(bins[cut.axis][k].box);
+    return true;
+}
+
+}  // namespace
+
+void halve_range(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
+    const std::size_t middle = range.begin + range.count() / 2;
+    left = {range.begin, middle, {}, range.may_have_copies};
+    right = {middle, range.end, {}, range.may_have_copies};
+    for (BoxRange* half : {&left, &right}) {
+        for (std::size_t k = half->begin; k < half->end; ++k) half->box.include(boxes[k].box);
+    }
+}
+
+// Of many boxes, the longest axis mostly suffices.
+bool cut_range(BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
+    if (range.count() > kMany) {
+        const FloatBox bounds = bounds_of_boxes(range);
+        const int longest = longest_axis(bounds);
+        if (cut_along(boxes, range, bounds, longest, longest, left, right)) return true;
+    }
+    return cut_along(boxes, range, bounds_of_centers(boxes, range), 0, 2, left, right);
 }
 
 }  // namespace tex::inline v1

@@ -41,12 +41,16 @@ struct BoxedTriangle {
 struct BoxRange {
     std::size_t begin = 0, end = 0;
     FloatBox box;
+    bool may_have_copies = true;
 
     [[nodiscard]] std::size_t count() const { return end - begin; }
 };
 
-// Sorts the range into two, neither of which is empty. With `by_order`, both halves have the same number of boxes.
-// Precondition: it has at least two.
-void cut_range(BoxedTriangle* boxes, const BoxRange& range, bool by_order, BoxRange& left, BoxRange& right);
+// Sorts the range into two, neither of which is empty. Returns false, and does nothing, if all boxes have the same
+// centre.
+bool cut_range(BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right);
+
+// Both halves have the same number of boxes. Precondition: there are at least two.
+void halve_range(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right);
 
 }  // namespace tex::inline v1

@@ -3,8 +3,13 @@
 #include "rays/box_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
+#include <vector>
 
 #include "rays/box_cuts.h"
 #include "threads/no_throw.h"
@@ -37,27 +42,6 @@ void set_box(Boxes& boxes, int k, const FloatBox& box) {
     }
 }
 
-// Cuts a range into up to eight, always the largest one. Returns their number.
-int children_of(BoxedTriangle* triangles, const BoxRange& range, int level, BoxRange* children) {
-    children[0] = range;
-    int count = 1;
-    while (count < kBoxes) {
-        int largest = -1;
-        float area = -1.0f;
-        for (int k = 0; k < count; ++k) {
-            if (children[k].count() <= kGroupTriangles || children[k].box.area() <= area) continue;
-            largest = k;
-            area = children[k].box.area();
-        }
-        if (largest < 0) break;
-        BoxRange left, right;
-        cut_range(triangles, children[largest], level > kMostCuts, left, right);
-        children[largest] = left;
-        children[count++] = right;
-    }
-    return count;
-}
-
 struct Piece {
     std::vector<Boxes> boxes;
     std::vector<TriangleGroup> groups;
@@ -81,6 +65,8 @@ private:
 
     Result<void> measure(const Execution& execution);
     [[nodiscard]] FloatBox box_of(std::size_t triangle) const;
+    void drop_copies(BoxRange& range);
+    int children_of(const BoxRange& range, int level, BoxRange* children);
     Result<void> box_triangles(const Execution& execution);
     Result<void> build_top(const Execution& execution);
     std::uint32_t build(const BoxRange& range, int level, Piece& piece);
@@ -145,6 +131,58 @@ Result<void> TreeBuilder::box_triangles(const Execution& execution) {
     return parallel_for(execution.quiet(), static_cast<int>(boxed_.size()), 1 << 14, fill);
 }
 
+// Takes triangles out of the range whose corners are those of another one, bit for bit and in the same order. The first
+// triangle stays, whose hit wins. Copies have the same centre, so that cuts leave them together.
+void TreeBuilder::drop_copies(BoxRange& range) {
+    struct Place {
+        std::array<std::uint32_t, 9> corners{};  // the bits of their coordinates
+        BoxedTriangle boxed;
+    };
+    std::vector<Place> places(range.count());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        places[k].boxed = boxed_[range.begin + k];
+        const Triangles::Triangle triangle = triangles_.at(places[k].boxed.triangle);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Float3& p = triangle.part.positions[triangle.vertex(c)];
+            std::memcpy(&places[k].corners[3 * c], &p, sizeof p);
+        }
+    }
+    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+        return a.corners != b.corners ? a.corners < b.corners : a.boxed.triangle < b.boxed.triangle;
+    });
+    const auto end = std::unique(places.begin(), places.end(),
+                                 [](const Place& a, const Place& b) { return a.corners == b.corners; });
+    range.end = range.begin;
+    for (auto place = places.begin(); place != end; ++place) boxed_[range.end++] = place->boxed;
+    range.may_have_copies = false;
+}
+
+// Cuts a range into up to eight, always the largest one. Returns their number.
+int TreeBuilder::children_of(const BoxRange& range, int level, BoxRange* children) {
+    children[0] = range;
+    int count = 1;
+    while (count < kBoxes) {
+        int largest = -1;
+        float area = -1.0f;
+        for (int k = 0; k < count; ++k) {
+            if (children[k].count() <= kGroupTriangles || children[k].box.area() <= area) continue;
+            largest = k;
+            area = children[k].box.area();
+        }
+        if (largest < 0) break;
+        BoxRange& parent = children[largest];
+        BoxRange left, right;
+        if (level > kMostCuts || !cut_range(boxed_.data(), parent, left, right)) {
+            if (level <= kMostCuts && parent.may_have_copies) drop_copies(parent);
+            if (parent.count() <= kGroupTriangles) continue;
+            halve_range(boxed_.data(), parent, left, right);
+        }
+        parent = left;
+        children[count++] = right;
+    }
+    return count;
+}
+
 // The levels above the pieces, one after the other: all ranges of a level at once.
 Result<void> TreeBuilder::build_top(const Execution& execution) {
     struct Wide {
@@ -159,7 +197,7 @@ Result<void> TreeBuilder::build_top(const Execution& execution) {
         const auto cut = [&](int begin, int end) {
             for (int k = begin; k < end; ++k) {
                 Wide& wide = level[static_cast<std::size_t>(k)];
-                wide.count = children_of(boxed_.data(), wide.job.range, wide.job.level, wide.children);
+                wide.count = children_of(wide.job.range, wide.job.level, wide.children);
             }
         };
         if (auto done = parallel_for(execution.quiet(), static_cast<int>(level.size()), 1, cut); !done) return done;
@@ -208,7 +246,7 @@ std::uint32_t TreeBuilder::add_group(const BoxRange& range, std::vector<Triangle
 std::uint32_t TreeBuilder::build(const BoxRange& range, int level, Piece& piece) {
     if (range.count() <= kGroupTriangles) return add_group(range, piece.groups);
     BoxRange children[kBoxes];
-    const int count = children_of(boxed_.data(), range, level, children);
+    const int count = children_of(range, level, children);
     const std::size_t index = piece.boxes.size();
     piece.boxes.push_back(no_boxes());
     for (int k = 0; k < count; ++k) {

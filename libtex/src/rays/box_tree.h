@@ -23,13 +23,15 @@ struct NearestPoint {
     std::uint32_t triangle = kNoHit;
     std::array<double, 3> weights{};  // of the triangle's corners
     Vector3 point;
+    std::int64_t steps = 0;  // of the search: see RayWork
 };
 
 // Each box has up to eight children: it is cut in two, then its largest child, and so on. A cut is the cheapest of 16
 // places along the longest axis, or along each axis if there are few triangles, by the surface area heuristic (Wald, On
 // Fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Triangles whose boxes have a common centre are
-// divided by their order. The least and the greatest of numbers do not depend on their order, and the cuts follow from
-// these and from counts. So the tree is the same for every number of threads.
+// divided by their order; of copies among them, the first one alone is in the tree. The least and the greatest of
+// numbers do not depend on their order, and the cuts follow from these and from counts. So the tree is the same for
+// every number of threads.
 class BoxTree {
 public:
     // Precondition: there is at least one triangle. Errors: out_of_memory, cancelled.
@@ -41,8 +43,8 @@ public:
     // The point nearest to `p` among those whose squared distance is below `most`. Of several, that of the first
     // triangle.
     [[nodiscard]] NearestPoint nearest(Vector3 p, double most = std::numeric_limits<double>::infinity()) const;
-    // A triangle within this squared distance, or kNoHit.
-    [[nodiscard]] std::uint32_t any_within(Vector3 p, double squared) const;
+    // A point within this squared distance, if there is any.
+    [[nodiscard]] NearestPoint any_within(Vector3 p, double squared) const;
 
     // Between the corners of the box that holds all triangles, in the unit of the meshes.
     [[nodiscard]] Vector3 low() const { return low_; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 
 #include "rays/box_tree.h"
 
@@ -70,9 +72,11 @@ NearestPoint BoxTree::search(Vector3 p, double most, double enough) const {
     Candidate stack[(kBoxes - 1) * kMostLevels + kBoxes + 1];
     Candidate* top = stack;
     *top++ = {0.0, 0};
+    std::int64_t steps = 0;
     while (top > stack && best.squared > enough) {
         const Candidate next = *--top;
         if (next.squared > best.squared * to_units) continue;
+        ++steps;
         if ((next.child & kGroupBit) != 0) {
             const TriangleGroup& group = groups_[next.child & ~kGroupBit];
             for (std::size_t k = 0; k < kGroupTriangles && group.triangle[k] != kNoHit; ++k) {
@@ -99,14 +103,15 @@ NearestPoint BoxTree::search(Vector3 p, double most, double enough) const {
             *place = {squared, boxes.child[k]};
         }
     }
+    best.steps = steps;
     return best;
 }
 
 NearestPoint BoxTree::nearest(Vector3 p, double most) const { return search(p, most, -1.0); }
 
-std::uint32_t BoxTree::any_within(Vector3 p, double squared) const {
+NearestPoint BoxTree::any_within(Vector3 p, double squared) const {
     const double more = squared > 0.0 ? squared * (1.0 + 0x1p-50) : 0x1p-1000;
-    return search(p, more, squared).triangle;
+    return search(p, more, squared);
 }
 
 }  // namespace tex::inline v1

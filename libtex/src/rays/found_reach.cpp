@@ -10,6 +10,9 @@
 #include <limits>
 #include <vector>
 
+#include "rays/box_tree.h"
+#include "rays/ray_work.h"
+
 namespace tex::inline v1 {
 namespace {
 
@@ -47,39 +50,51 @@ struct LowSide {
 
 // From the vertices of the high mesh to the low one. A vertex that is nearer than both distances so far changes
 // neither; mostly, the triangle near the last vertex says so.
-void see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, double most, BothSides& sides) {
+// Returns whether that does not cost too much.
+bool see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, double most, BothSides& sides) {
+    RayWork work;
     std::uint32_t near = kNoHit;
-    for (int k = begin; k < end; ++k) {
+    for (int k = begin; k < end && work.is_fair(); ++k) {
         const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
         const double known = std::min(sides.front.value(), sides.back.value());
         if (near != kNoHit &&
             nearest_on_triangle(p, Triangles::Triangle{low.part, near}.corners()).squared <= known * known)
             continue;
-        near = low.tree.any_within(p, known * known);
+        const NearestPoint within = low.tree.any_within(p, known * known);
+        work.add(1, within.steps);
+        near = within.triangle;
         if (near != kNoHit) continue;
         const NearestPoint nearest = low.tree.nearest(p, most * most);
+        work.add(1, nearest.steps);
         if (nearest.triangle == kNoHit) continue;
-        const Vector3 outwards = low.directions.at(low.triangles[nearest.triangle], nearest.weights, nearest.point);
+        const Vector3 outwards =
+            low.directions.at(low.triangles[nearest.triangle], nearest.weights, nearest.point, work);
         const bool in_front = dot(p - nearest.point, outwards) >= 0.0;
         (in_front ? sides.front : sides.back).see(std::sqrt(nearest.squared));
     }
+    return work.is_fair();
 }
+
+// What a piece costs on each side.
+struct BothWorks {
+    RayWork low, high;
+};
 
 // From the corners and the middle of a triangle of the low mesh to the high one, along both directions of the ray.
 void see_triangle(const MeshPart& low, std::size_t triangle, const RayDirections& directions, const BoxTree& tree,
-                  double most, BothSides& sides) {
+                  double most, BothSides& sides, BothWorks& works) {
     constexpr double kThird = 1.0 / 3.0;
     constexpr std::array<double, 3> kPlaces[] = {
         {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {kThird, kThird, kThird}};
     const auto corners = Triangles::Triangle{low, triangle}.corners();
     Ray rays[8];
     for (std::size_t k = 0; k < 4; ++k) {
-        const Vector3 p = mix(corners, kPlaces[k]), d = directions.at(triangle, kPlaces[k], p);
+        const Vector3 p = mix(corners, kPlaces[k]), d = directions.at(triangle, kPlaces[k], p, works.low);
         rays[2 * k] = {{p.x, p.y, p.z}, {d.x, d.y, d.z}, most, Facing::back};
         rays[2 * k + 1] = {{p.x, p.y, p.z}, {-d.x, -d.y, -d.z}, most, Facing::front};
     }
     RayHit hits[8];
-    trace_rays(tree.view(), rays, 8, hits);
+    trace_fairly(tree.view(), rays, 8, hits, works.high);
     for (std::size_t k = 0; k < 8; k += 2) {
         const RayHit &out = hits[k], &in = hits[k + 1];
         if (out.triangle != kNoHit && (in.triangle == kNoHit || out.t < in.t))
@@ -110,20 +125,33 @@ Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& tr
                        const RayDirections& directions, const RayGroup& group, double most, const Execution& execution,
                        BothSides& sides) {
     const std::size_t step = triangles.size() / kMostTriangles + 1;
+    CostlyPiece costly, costly_back;
     const auto from_low = [&](int begin, int end) {
-        for (int k = begin; k < end; ++k)
-            see_triangle(low, triangles[static_cast<std::size_t>(k) * step], directions, group.tree, most, sides);
+        const int piece = begin / kTrianglesPerPiece;
+        BothWorks works;
+        for (int k = begin; k < end && !costly.is_before(piece); ++k) {
+            const std::size_t triangle = triangles[static_cast<std::size_t>(k) * step];
+            see_triangle(low, triangle, directions, group.tree, most, sides, works);
+            if (!works.low.is_fair()) return costly.see(piece, RaySide::low);
+            if (!works.high.is_fair()) return costly.see(piece, RaySide::high);
+        }
     };
     const auto count = static_cast<int>((triangles.size() + step - 1) / step);
     if (auto seen = parallel_for(execution, count, kTrianglesPerPiece, from_low); !seen) return seen;
+    if (auto fair = costly.check(); !fair) return fair;
     const MeshPart part = only_these(low, triangles);
     const auto low_tree = BoxTree::build(Triangles({&part}), execution);
     if (!low_tree) return low_tree.error();
     const LowSide side{part, *low_tree, triangles, directions};
     for (const MeshPart* high : group.triangles.parts()) {
-        const auto from_high = [&](int begin, int end) { see_vertices(*high, begin, end, side, most, sides); };
+        const auto from_high = [&](int begin, int end) {
+            const int piece = begin / kVerticesPerPiece;
+            if (costly_back.is_before(piece)) return;
+            if (!see_vertices(*high, begin, end, side, most, sides)) costly_back.see(piece, RaySide::low);
+        };
         const auto vertices = static_cast<int>(high->positions.size());
         if (auto seen = parallel_for(execution, vertices, kVerticesPerPiece, from_high); !seen) return seen;
+        if (auto fair = costly_back.check(); !fair) return fair;
     }
     return {};
 }
@@ -146,11 +174,14 @@ Result<FoundReach> found_reach(const MeshPart& low, const RayDirections& directi
 
 double distance_between(const MeshPart& low, const RayGroups& groups) {
     double squared = std::numeric_limits<double>::infinity();
-    for (std::size_t c = 0; c < low.indices.size(); ++c) {
+    RayWork work;
+    for (std::size_t c = 0; c < low.indices.size() && work.is_fair(); ++c) {
         const int group = groups.of_low(c / 3);
         if (group == RayGroups::kNone) continue;
         const BoxTree& high = groups.all()[static_cast<std::size_t>(group)].tree;
-        squared = std::min(squared, high.nearest(vector_of(low.positions[low.indices[c]]), squared).squared);
+        const NearestPoint nearest = high.nearest(vector_of(low.positions[low.indices[c]]), squared);
+        work.add(1, nearest.steps);
+        squared = std::min(squared, nearest.squared);
     }
     return std::sqrt(squared);
 }

@@ -35,4 +35,11 @@ void HitNormals::find(const HighSurface& surface) {
     }
 }
 
+void HitNormals::turn(std::size_t k, Vector3 face) {
+    if (!(dot(at(k), face) > 0.0)) return;
+    normals_.x[k] = -normals_.x[k];
+    normals_.y[k] = -normals_.y[k];
+    normals_.z[k] = -normals_.z[k];
+}
+
 }  // namespace tex::inline v1

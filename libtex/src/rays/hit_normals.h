@@ -20,6 +20,9 @@ public:
     void add(const HighSurface& surface, const Triangles::Triangle& triangle, const HighSurface::Weights& weights);
     // Finds what HighSurface::normal_at() finds.
     void find(const HighSurface& surface);
+    // Turns the k-th normal round if it is on the side of its triangle that `face`, the triangle's normal, points to.
+    // For triangles that are seen from behind; where their corners alone are the wrong way round, normals stay.
+    void turn(std::size_t k, Vector3 face);
 
     // Of the k-th hit that was added.
     [[nodiscard]] const Triangles::Triangle& triangle(std::size_t k) const { return places_[k]; }

@@ -30,7 +30,7 @@ RayEnd nearer(const RayHit& out, const RayHit& in) {
 
 void RayCaster::trace(Scratch& scratch) const {
     scratch.hits.assign(scratch.rays.size(), {});
-    trace_rays(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data());
+    trace_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
 }
 
 // A triangle that the ray outwards meets is seen from outside if it turns its back to that ray. Rays that look the same
@@ -88,13 +88,13 @@ void RayCaster::cast(const Starts& starts, Ends& ends, Scratch& scratch) const {
     note_behind(starts, ends, scratch);
 }
 
-RayEnd RayCaster::cast_line(const RayStart& start) const {
+RayEnd RayCaster::cast_line(const RayStart& start, RayWork& work) const {
     const Vector3 across = tree_.high() - tree_.low(), away = start.point - tree_.low();
     const double length = std::sqrt(dot(across, across)) + std::sqrt(dot(away, away));
     const Ray rays[2] = {ray_from(start.point, start.direction, length, Facing::back),
                          ray_from(start.point, -1.0 * start.direction, length, Facing::front)};
     RayHit hits[2];
-    trace_rays(tree_.view(), rays, 2, hits);
+    trace_fairly(tree_.view(), rays, 2, hits, work);
     return nearer(hits[0], hits[1]);
 }
 

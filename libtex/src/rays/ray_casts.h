@@ -11,6 +11,7 @@
 #include <tex/mesh.h>
 
 #include "rays/box_tree.h"
+#include "rays/ray_work.h"
 
 namespace tex::inline v1 {
 
@@ -42,12 +43,13 @@ public:
         std::vector<RayStart> missed;
         std::vector<RayEnd> seen;
         std::vector<std::size_t> which;
+        RayWork work;
     };
-    // ends[k] belongs to starts[k].
+    // ends[k] belongs to starts[k]. Means nothing if scratch.work is not fair afterwards.
     void cast(const std::vector<RayStart>& starts, std::vector<RayEnd>& ends, Scratch& scratch) const;
 
     // The nearest triangle seen from outside on the whole line of a start.
-    [[nodiscard]] RayEnd cast_line(const RayStart& start) const;
+    [[nodiscard]] RayEnd cast_line(const RayStart& start, RayWork& work) const;
 
     // The triangle of a hit, and the place of the hit on it.
     [[nodiscard]] Triangles::Triangle place_of(const RayEnd& end) const { return triangles_.at(end.triangle); }

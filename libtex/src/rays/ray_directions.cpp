@@ -177,26 +177,29 @@ Result<RayDirections> RayDirections::make(const MeshPart& part, RayMode mode, do
     });
 }
 
-double RayDirections::straightness(Vector3 point) const {
+double RayDirections::straightness(Vector3 point, RayWork& work) const {
     if (!hard_tree_) return 1.0;
     const double most = width_ * width_;
-    const double part = std::sqrt(std::min(hard_tree_->nearest(point, most).squared, most));
+    const NearestPoint nearest = hard_tree_->nearest(point, most);
+    work.add(1, nearest.steps);
+    const double part = std::sqrt(std::min(nearest.squared, most));
     const double t = width_ > 0.0 ? part / width_ : 1.0;
     return t * t * (3.0 - 2.0 * t);
 }
 
-Vector3 RayDirections::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point) const {
-    return skewed(triangle, weights, own_.empty() ? 0.0 : straightness(point));
+Vector3 RayDirections::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point,
+                          RayWork& work) const {
+    return skewed(triangle, weights, own_.empty() ? 0.0 : straightness(point, work));
 }
 
 void RayDirections::along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
-                          std::size_t count, VectorArrays<double> directions) const {
+                          std::size_t count, VectorArrays<double> directions, RayWork& work) const {
     CornerVectors corners;
     copy_to(of_corners(normals_, triangle), corners);
     if (own_.empty() && mix_directions(corners, weights, count, directions)) return;
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t k = 0; k < count && work.is_fair(); ++k) {
         const Vector3 direction =
-            at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, {points.x[k], points.y[k], points.z[k]});
+            at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, {points.x[k], points.y[k], points.z[k]}, work);
         directions.x[k] = direction.x;
         directions.y[k] = direction.y;
         directions.z[k] = direction.z;

@@ -13,6 +13,7 @@
 
 #include "kernels/corner_vectors.h"
 #include "rays/box_tree.h"
+#include "rays/ray_work.h"
 
 namespace tex::inline v1 {
 
@@ -23,20 +24,21 @@ public:
     static Result<RayDirections> make(const MeshPart& part, RayMode mode, double width, double angle,
                                       const Execution& execution);
 
-    // Of unit length, at the point of the triangle that has these weights.
-    [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point) const;
+    // Of unit length, at the point of the triangle that has these weights. `work` is what hard edges cost.
+    [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point,
+                             RayWork& work) const;
     // The same with this k of RayMode::straight.
     [[nodiscard]] Vector3 skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const;
-    // Those of many points of a triangle.
+    // Those of many points of a triangle. They mean nothing if the work is not fair afterwards.
     void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
-               std::size_t count, VectorArrays<double> directions) const;
+               std::size_t count, VectorArrays<double> directions, RayWork& work) const;
 
     // The hard edges as triangles without area; empty unless the mode is `straight`.
     [[nodiscard]] const MeshPart& hard_edges() const { return *hard_; }
 
 private:
     void set_straight(const std::vector<std::uint32_t>& position, double angle);
-    [[nodiscard]] double straightness(Vector3 point) const;
+    [[nodiscard]] double straightness(Vector3 point, RayWork& work) const;
     [[nodiscard]] std::array<Vector3, 3> of_corners(const std::vector<Vector3>& normals, std::size_t triangle) const {
         return {normals[3 * triangle], normals[3 * triangle + 1], normals[3 * triangle + 2]};
     }

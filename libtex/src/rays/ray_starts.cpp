@@ -43,8 +43,8 @@ Result<void> check_picture(const Plane<float>* picture, float most, const std::s
 
 }  // namespace
 
-RayStart RayStarts::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
-                       double y) const {
+RayStart RayStarts::at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x, double y,
+                       RayWork& work) const {
     if (inputs_.cage != nullptr) {
         const Vector3 way = mix(Triangles::Triangle{*inputs_.cage, triangle}.corners(), weights) - point;
         const double length = std::sqrt(dot(way, way));
@@ -54,19 +54,19 @@ RayStart RayStarts::at(std::size_t triangle, const std::array<double, 3>& weight
     if (inputs_.offset != nullptr) front *= filtered(*inputs_.offset, x, y);
     const Vector3 direction = inputs_.skew != nullptr
                                   ? directions_.skewed(triangle, weights, filtered(*inputs_.skew, x, y))
-                                  : directions_.at(triangle, weights, point);
+                                  : directions_.at(triangle, weights, point, work);
     return {point, direction, front};
 }
 
 void RayStarts::along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
-                      std::size_t count, VectorArrays<double> directions, RayStart* starts) const {
+                      std::size_t count, VectorArrays<double> directions, RayStart* starts, RayWork& work) const {
     const auto point_of = [&](std::size_t k) { return Vector3{points.x[k], points.y[k], points.z[k]}; };
     if (inputs_.cage != nullptr) {
         for (std::size_t k = 0; k < count; ++k)
-            starts[k] = at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, point_of(k), 0.0, 0.0);
+            starts[k] = at(triangle, {weights.x[k], weights.y[k], weights.z[k]}, point_of(k), 0.0, 0.0, work);
         return;
     }
-    directions_.along(triangle, weights, points, count, directions);
+    directions_.along(triangle, weights, points, count, directions, work);
     for (std::size_t k = 0; k < count; ++k)
         starts[k] = {point_of(k), {directions.x[k], directions.y[k], directions.z[k]}, front_};
 }

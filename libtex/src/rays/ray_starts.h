@@ -11,6 +11,7 @@
 
 #include "rays/ray_casts.h"
 #include "rays/ray_directions.h"
+#include "rays/ray_work.h"
 
 namespace tex::inline v1 {
 
@@ -21,12 +22,13 @@ public:
         : directions_(directions), inputs_(inputs), front_(front), slack_(0x1p-20 * diagonal) {}
 
     // Of the place of a triangle with these weights, which lies at (x, y) of the map: from 0 to 1, right and down.
+    // `work` is that of directions.
     [[nodiscard]] RayStart at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
-                              double y) const;
+                              double y, RayWork& work) const;
 
     // Those of many places of a triangle, without pictures. Writes their directions to `directions`.
     void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
-               std::size_t count, VectorArrays<double> directions, RayStart* starts) const;
+               std::size_t count, VectorArrays<double> directions, RayStart* starts, RayWork& work) const;
 
     // Whether the place in the map matters.
     [[nodiscard]] bool has_pictures() const { return inputs_.skew != nullptr || inputs_.offset != nullptr; }

@@ -44,7 +44,7 @@ void SecondRays::start(const HitPoint& place, double side, std::uint32_t seed, F
 void SecondRays::add_openness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, 1.0, seed, Facing::both, scratch);
     scratch.blocked.resize(scratch.rays.size());
-    find_blocked(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.blocked.data());
+    find_blocked_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.blocked.data(), scratch.work);
     int open = 0;
     Vector3 bent;
     for (std::size_t k = 0; k < scratch.rays.size(); ++k) {
@@ -60,7 +60,7 @@ void SecondRays::add_openness(const HitPoint& place, std::uint32_t seed, Scratch
 void SecondRays::add_thickness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, -1.0, seed ^ kInwards, Facing::both, scratch);
     scratch.hits.assign(scratch.rays.size(), {});
-    trace_rays(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data());
+    trace_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
     double sum = 0.0;
     int count = 0;
     for (const RayHit& hit : scratch.hits) {

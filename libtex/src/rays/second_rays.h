@@ -10,6 +10,7 @@
 
 #include "rays/box_tree.h"
 #include "rays/hemisphere.h"
+#include "rays/ray_work.h"
 
 namespace tex::inline v1 {
 
@@ -37,9 +38,10 @@ public:
         std::vector<Ray> rays;
         std::vector<std::uint8_t> blocked;
         std::vector<RayHit> hits;
+        RayWork work;
     };
 
-    // Casts the rays of one place.
+    // Casts the rays of one place. Means nothing if scratch.work is not fair afterwards.
     void add(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
 
 private:

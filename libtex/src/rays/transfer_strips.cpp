@@ -23,13 +23,17 @@ const LowTriangle& TransferStrips::triangle_of(Strip& strip, std::int32_t number
 }
 
 void TransferStrips::run(int strip) {
+    if (costly_.is_before(strip)) return;
     std::unique_ptr<Strip> work = take_strip();
     const std::int64_t overlaps = scene_.coverage.cover(strip, work->covered);
     const Extent extent = result_.map.extent();
     const int rows = scene_.coverage.strip_rows() / n_, first = strip * rows;
     const int width = std::max(1, static_cast<int>(kRaysAtOnce) / (n_ * n_));
     for (int j = first; j < std::min(extent.height, first + rows); ++j) {
-        for (int i = 0; i < extent.width; i += width) cast(*work, first, j, i, std::min(extent.width, i + width));
+        for (int i = 0; i < extent.width; i += width) {
+            const auto costly = cast(*work, first, j, i, std::min(extent.width, i + width));
+            if (costly) return costly_.see(strip, *costly);
+        }
     }
     add(std::move(work), overlaps);
 }
@@ -82,10 +86,13 @@ void TransferStrips::finish() {
 }
 
 // Some texels of row j.
-void TransferStrips::cast(Strip& strip, int first_row, int j, int begin, int end) const {
+std::optional<RaySide> TransferStrips::cast(Strip& strip, int first_row, int j, int begin, int end) const {
+    strip.starting = strip.casts.work = strip.scratch.work = {};
     collect(strip, first_row, j, begin, end);
     start_rays(strip, j);
+    if (!strip.starting.is_fair()) return RaySide::low;
     cast_groups(strip);
+    if (!strip.casts.work.is_fair()) return RaySide::high;
     find_normals(strip);
     const std::int64_t before = strip.rays;
     strip.rays += static_cast<std::int64_t>(strip.starts.size());
@@ -98,8 +105,10 @@ void TransferStrips::cast(Strip& strip, int first_row, int j, int begin, int end
         finish_texel(strip, i, j, first, last);
         first = last;
     }
+    if (!strip.casts.work.is_fair() || !strip.scratch.work.is_fair()) return RaySide::high;
     encode_texels(strip, j);
     if (scene_.rays != nullptr) scene_.rays->fetch_add(strip.rays - before, std::memory_order_relaxed);
+    return std::nullopt;
 }
 
 void TransferStrips::collect(Strip& strip, int first_row, int j, int begin, int end) const {
@@ -134,14 +143,15 @@ void TransferStrips::start_rays(Strip& strip, int j) const {
         triangle_of(strip, number).points(weights, end - first, points);
         if (!scene_.starts.has_pictures()) {
             scene_.starts.along(triangle, weights, points, end - first, strip.directions.all().from(first),
-                                strip.starts.data() + first);
+                                strip.starts.data() + first, strip.starting);
             continue;
         }
         for (std::size_t k = first; k < end; ++k) {
             const auto place = static_cast<int>(samples[k].place);
             const double x = (samples[k].i + (place % n_ + 0.5) / n_) / width,
                          y = (j + (place / n_ + 0.5) / n_) / height;
-            strip.starts[k] = scene_.starts.at(triangle, strip.weights.at(k), vector_of(strip.points.at(k)), x, y);
+            strip.starts[k] =
+                scene_.starts.at(triangle, strip.weights.at(k), vector_of(strip.points.at(k)), x, y, strip.starting);
         }
     }
 }
@@ -174,6 +184,13 @@ void TransferStrips::find_normals(Strip& strip) const {
         strip.normals.add(scene_.surface, caster.place_of(ray), ray.weights);
     }
     strip.normals.find(scene_.surface);
+    if (!scene_.backfaces) return;
+    std::size_t hit = 0;
+    for (const RayEnd& ray : strip.ends) {
+        if (ray.triangle == kNoHit) continue;
+        if (ray.behind) strip.normals.turn(hit, HighSurface::face_normal(strip.normals.triangle(hit)));
+        ++hit;
+    }
 }
 
 }  // namespace tex::inline v1

@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <tex/mesh.h>
@@ -23,6 +24,7 @@
 #include "rays/ray_casts.h"
 #include "rays/ray_groups.h"
 #include "rays/ray_starts.h"
+#include "rays/ray_work.h"
 #include "rays/second_rays.h"
 
 namespace tex::inline v1 {
@@ -63,7 +65,9 @@ public:
 
     // Threads may transfer different strips at the same time.
     void run(int strip);
-    // What is known only after all strips: the ranges, and the needs of missed texels.
+    // After all strips. Errors: unsupported (RayWork).
+    [[nodiscard]] Result<void> check() const { return costly_.check(); }
+    // What is known only then: the ranges, and the needs of missed texels.
     void finish();
 
 private:
@@ -124,6 +128,7 @@ private:
         std::vector<std::size_t> chosen;
         std::vector<RayStart> chosen_starts;
         std::vector<RayEnd> chosen_ends;
+        RayWork starting;  // of directions
         RayCaster::Scratch casts;
         SecondRays::Scratch scratch;
         HitNormals normals;
@@ -134,7 +139,8 @@ private:
     };
 
     const LowTriangle& triangle_of(Strip& strip, std::int32_t number) const;
-    void cast(Strip& strip, int first_row, int j, int begin, int end) const;
+    // Returns the mesh, if any, that makes it cost too much.
+    [[nodiscard]] std::optional<RaySide> cast(Strip& strip, int first_row, int j, int begin, int end) const;
     void collect(Strip& strip, int first_row, int j, int begin, int end) const;
     void start_rays(Strip& strip, int j) const;
     void cast_groups(Strip& strip) const;
@@ -154,6 +160,7 @@ private:
     const int n_;
     TransferredMaps& result_;
     const bool wants_more_;
+    CostlyPiece costly_;
     std::mutex mutex_;  // guards the counts in result_, and:
     std::vector<std::unique_ptr<Strip>> idle_;
     std::vector<float> needs_;

@@ -96,10 +96,7 @@ void TransferStrips::see_more(Strip& strip, int i, int j, std::size_t begin, std
 void TransferStrips::see_second(Strip& strip, int i, int j, std::size_t k, std::size_t hit) const {
     const Triangles::Triangle& at = strip.normals.triangle(hit);
     HitPoint point{mix(at.corners(), strip.ends[k].weights), strip.normals.at(hit), HighSurface::face_normal(at)};
-    if (scene_.backfaces && dot(point.face, strip.starts[k].direction) < 0.0) {
-        point.face = -1.0 * point.face;
-        point.normal = -1.0 * point.normal;
-    }
+    if (scene_.backfaces && dot(point.face, strip.starts[k].direction) < 0.0) point.face = -1.0 * point.face;
     if (!(dot(point.normal, point.face) > 0.0)) point.normal = point.face;
     const std::uint32_t seed = Hemisphere::seed_of(i, j, static_cast<std::uint32_t>(strip.samples[k].place));
     scene_.second->add(point, seed, strip.scratch, strip.more.second);
@@ -134,9 +131,9 @@ void TransferStrips::miss_texel(Strip& strip, int i, int j, std::size_t begin) c
     result_.map.x.at(i, j) = kNoNormal;
     ++strip.missed;
     const int group = strip.samples[begin].group;
-    const RayEnd line = group == RayGroups::kNone
-                            ? RayEnd{}
-                            : scene_.casters[static_cast<std::size_t>(group)].cast_line(strip.starts[begin]);
+    const RayEnd line = group == RayGroups::kNone ? RayEnd{}
+                                                  : scene_.casters[static_cast<std::size_t>(group)].cast_line(
+                                                        strip.starts[begin], strip.casts.work);
     if (line.triangle == kNoHit)
         ++strip.hopeless;
     else
