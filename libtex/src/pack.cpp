@@ -47,6 +47,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         packed.bytes.resize(level_bytes(texture.format, extent));
         const int block = format_info(texture.format).block.height;
         const int together = is_optimised(options) ? band_rows : block;
+        const RdoBands bands{band_rows, extent};
         const int grain = std::max(1, kPieceTexels / extent.width / together) * together;
         const auto fraction = [&] { return static_cast<double>(done) / static_cast<double>(total); };
         ProgressSpan span;
@@ -56,7 +57,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
             [&](int begin, int end) {
-                pack_rows(map, others, extent.height, options, begin, end, packed.bytes.data(), band_rows, tally);
+                pack_rows(map, others, extent.height, options, begin, end, packed.bytes.data(), bands, tally);
             },
             span);
         if (!result) return result.error();

@@ -73,19 +73,19 @@ inline constexpr Named<Metric> kMetricNames[] = {
 // weights, or all), and takes that with the least D + lambda R (Sullivan and Wiegand, 1998): D is the sum of the angles
 // of its texels, R its estimated size as matches and literals of a Lempel-Ziv coder.
 //
-// It applies to encodings with blocks; the others ignore it. A level is divided into bands of whole rows of blocks,
-// from the top: as many rows as a power of two needs to give a band of the base level at least 16384 blocks, and as
-// many in the smaller levels. Bands do not depend on each other. Memory therefore holds a few of them, and the bytes
-// are the same for every number of threads. Each band has its own lambda, the greatest one found that keeps the
-// promise.
+// It applies to encodings with blocks; the others ignore it. A level is divided into bands of whole rows of blocks: the
+// power of two that gives a band of the base level at least 16384 blocks and 64 rows of texels. Memory holds a few of
+// them, and the bytes are the same for every number of threads. Each level is also divided into squares of 512x512
+// texels, from the upper left corner; a rest of less than 64 texels belongs to the square beside it. What a square has
+// in a band, its part, has its own lambda, the greatest one found that keeps the promise.
 //
 // The promise concerns the angles between the normals of the source and those of the blocks, as compare() measures
 // them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit.
 //
-//   mean     the mean angle of every band, and so of every level, exceeds that of the same encoding without
+//   mean     the mean angle of every part, so of every square and level, exceeds that of the same encoding without
 //            optimisation by at most so many degrees
 //   max      no texel's angle exceeds both `max` degrees and its own angle without optimisation; if `max` is 0, it is
-//            kRdoMaxOfMean times the mean angle that the band may have, so that smooth maps stay smooth
+//            kRdoMaxOfMean times the mean angle that the part may have, so that smooth maps stay smooth
 //
 // A band that cannot keep the promise, or is no smaller after zstd -19, stays plain; in files, so does a whole level.
 inline constexpr int kLeastRdoWindow = 64;
@@ -102,7 +102,7 @@ struct RdoOptions {
 struct RdoReport {
     double plain_mean = 0.0;   // the mean angle without optimisation
     double mean = 0.0;         // the mean angle of the blocks
-    double most_growth = 0.0;  // the greatest growth of a band's mean angle: at most RdoOptions::mean
+    double most_growth = 0.0;  // the greatest growth of a part's mean angle: at most RdoOptions::mean
     double most_raised = 0.0;  // the greatest angle of the texels whose angles have grown: at most `max`
 };
 

@@ -83,7 +83,7 @@ void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, in
 }
 
 // Packs rows of blocks, `count` rows of texels from row j. For the other arguments, see pack_rows().
-void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, std::byte* out, int band_rows,
+void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, std::byte* out, const RdoBands& bands,
                RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
     const int width = rows.extent().width;
@@ -102,9 +102,9 @@ void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, s
     encode_astc(format, options.effort, xy.data(), {width, count}, out);
     if (!is_optimised(options)) return;
     if (plain != nullptr) std::memcpy(plain, out, level_bytes(format, {width, count}));
-    for (int k = 0; k < count; k += band_rows) {
+    for (int k = 0; k < count; k += bands.rows) {
         const float* const band = xy.data() + 2 * size(width) * size(k);
-        optimise_astc_band(band, {width, std::min(band_rows, count - k)}, options,
+        optimise_astc_band(band, std::min(bands.rows, count - k), bands.level, bands.first + j + k, options,
                            out + level_bytes(format, {width, k}), tally);
     }
 }
@@ -144,7 +144,7 @@ Swizzle swizzle_with(Encoding encoding, OtherPlanes beside) {
 }
 
 void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
-               std::byte* out, int band_rows, RdoTally* tally, std::byte* plain) {
+               std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
     const FormatInfo info = format_info(format);
     Swizzle channels = swizzle_with(options.encoding, others);
@@ -156,7 +156,7 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
         const int block = info.block.height;
         if (is_astc(format)) {
             const std::size_t offset = size(begin / block) * pitch;
-            return pack_astc(rows, options, begin, end - begin, out + offset, band_rows, tally,
+            return pack_astc(rows, options, begin, end - begin, out + offset, bands, tally,
                              plain == nullptr ? nullptr : plain + offset);
         }
         for (int j = begin; j < end; j += block) encode_blocks(rows.blocks(j), options, out + size(j / block) * pitch);
@@ -165,10 +165,10 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
             const std::size_t offset = size(begin / block) * pitch;
             std::memcpy(plain + offset, out + offset, size(blocks_across(end - begin, block)) * pitch);
         }
-        for (int j = begin; j < end; j += band_rows) {
+        for (int j = begin; j < end; j += bands.rows) {
             const auto row = [&](int r) { return rows.blocks(j + r * block); };
-            optimise_band(row, blocks_across(std::min(band_rows, end - j), block), options,
-                          out + size(j / block) * pitch, tally);
+            optimise_band(row, blocks_across(std::min(bands.rows, end - j), block), bands.level, bands.first + j,
+                          options, out + size(j / block) * pitch, tally);
         }
         return;
     }

@@ -18,14 +18,14 @@ namespace tex::inline v1 {
 // `begin` is a multiple of the height of a block. If blocks are encoded, `end` is such a multiple too, or equals the
 // height; rows that the last block lacks repeat the last row. `out` is where row 0 goes.
 //
-// If is_optimised(options), rows are optimised in bands of `band_rows`, see rdo_band_rows(); `begin` is then a multiple
-// of it, and `end` too, unless it is the height. `tally` may be null. Throws std::bad_alloc.
+// If is_optimised(options), rows are optimised in bands; `begin` is then a multiple of their rows, and `end` too,
+// unless it is the height. `tally` may be null. Throws std::bad_alloc.
 //
 // `plain`, unless it is null, gets the blocks as they are without optimisation, at the same places as `out`.
 //
 // `others`: the data of the map beside its normals that are stored, in the channels that can_hold() names.
 void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
-               std::byte* out, int band_rows, RdoTally* tally = nullptr, std::byte* plain = nullptr);
+               std::byte* out, const RdoBands& bands, RdoTally* tally = nullptr, std::byte* plain = nullptr);
 
 // The swizzle of a texture of this encoding that also holds these data. Alpha stays a constant there: whether it is one
 // is known only after the last row.

@@ -10,6 +10,7 @@
 
 #include "blocks/astc_plan.h"
 #include "rows/rdo_band.h"
+#include "rows/rdo_parts.h"
 #include "rows/rdo_runs.h"
 
 namespace tex::inline v1 {
@@ -26,11 +27,26 @@ struct RdoAstcBlock {
 struct RdoAstcBand : RdoBlocks {
     Extent block{4, 4};
     int window = 0;  // bytes
+    int across = 0;  // blocks
+    RdoParts places;
     std::vector<RdoAstcBlock> blocks;
+
+    // The part of texel k of a block.
+    [[nodiscard]] int part_at(std::size_t index, int k) const {
+        const int n = static_cast<int>(index);
+        return places.at(n % across * block.width + k % block.width, n / across * block.height + k / block.width);
+    }
+    // Whether the texels of a block are in several parts. (Texels outside the level are in the last ones.)
+    [[nodiscard]] bool is_divided(std::size_t index) const {
+        return part_at(index, 0) != part_at(index, block_texels - 1) ||
+               part_at(index, block.width - 1) != part_at(index, block_texels - block.width);
+    }
 };
 
-// Reads blocks of these texels, as encode_astc() takes and writes them. Throws std::bad_alloc.
-RdoAstcBand read_astc_band(const float* xy, Extent extent, const PackOptions& options, const std::byte* blocks);
+// Reads blocks of `height` rows of texels, as encode_astc() takes and writes them; the first of them is row `first` of
+// this level. Throws std::bad_alloc.
+RdoAstcBand read_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
+                           const std::byte* blocks);
 
 // What 16 bytes decode to.
 struct RdoAstcTexels {
@@ -40,6 +56,9 @@ void decode_astc_normals(Extent block, const std::byte* bytes, RdoAstcTexels& te
 
 // The sum of the chords between a block and decoded texels, or kTooLong if one is longer than is allowed.
 float astc_chord_sum(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded);
+
+// How much the angles in each part grow if a block decodes to these texels.
+std::vector<double> astc_growths(const RdoAstcBand& band, std::size_t index, const RdoAstcTexels& decoded);
 
 // The angles of decoded texels.
 RdoAngles astc_angles(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded);

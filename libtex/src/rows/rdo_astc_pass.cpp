@@ -26,7 +26,7 @@ struct AstcChoice {
 class AstcPass final : public RdoRuns {
 public:
     AstcPass(const RdoAstcBand& band, const ByteCounts& literals)
-        : RdoRuns(band.count()), band_(band), literal_bits_(literal_bits(literals)),
+        : RdoRuns(band), band_(band), literal_bits_(literal_bits(literals)),
           sources_(band.block, band.window, band.count()) {}
 
 private:
@@ -34,7 +34,7 @@ private:
         lambda_ = lambda;
         sources_.set_lambda(lambda);
     }
-    void choose_block(int block, const RdoBudget* budget) override;
+    void choose_block(int block) override;
     void keep_block(int block) override { write(block, plain_choice(block)); }
     [[nodiscard]] AstcChoice plain_choice(int block) const;
     [[nodiscard]] float bits_of(const AstcChoice& choice) const;
@@ -109,7 +109,7 @@ void AstcPass::try_front(int block, int at) {
     try_choice(block, choice);
 }
 
-void AstcPass::choose_block(int block, const RdoBudget* budget) {
+void AstcPass::choose_block(int block) {
     const RdoAstcBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
     for (int k = 0; k < band_.block_texels; ++k) {
         codes_[0][k] = 127.5f * (texels.x[k] + 1.0f);
@@ -139,8 +139,10 @@ void AstcPass::choose_block(int block, const RdoBudget* budget) {
 
     const RdoAngles angles = astc_angles(texels, band_.block_texels, best_.decoded);
     const double growth = angles.sum - texels.plain_sum;
-    if (budget != nullptr && !budget->allows(result_.growth + growth)) return keep_block(block);
-    result_.growth += growth;
+    const auto index = static_cast<std::size_t>(block);
+    const bool is_spent =
+        band_.is_divided(index) ? spend(astc_growths(band_, index, best_.decoded)) : spend(block, growth);
+    if (!is_spent) return keep_block(block);
     result_.most_raised = std::max(result_.most_raised, angles.most_raised);
     write(block, best_);
 }

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "blocks/block_half.h"
+#include "blocks/extent.h"
 #include "kernels/angle_search.h"
 #include "kernels/chords.h"
 #include "rows/math.h"
+#include "rows/rdo_parts.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -46,15 +49,18 @@ void add_block(const BlockRow& row, int index, RdoBand& band) {
         block.y[k] = row.negate_y ? -normal.y : normal.y;
         block.z[k] = normal.z;
         block.inside[k] = i < row.width && j < row.height ? 1.0f : 0.0f;
-        band.texels += static_cast<double>(block.inside[k]);
     }
     band.blocks.push_back(block);
 }
 
-// Sets how long the chords of all texels may get: `longest`, or as long as they are without optimisation.
-void set_limits(float longest, RdoBand& band) {
+// Sets how long the chords of all texels may get: the longest of their part, or as long as they are without
+// optimisation.
+void set_limits(const RdoOptions& options, RdoBand& band) {
+    std::vector<float> longest_of;
+    for (const RdoPart& part : band.parts) longest_of.push_back(longest_chord(options, part));
     for (std::size_t index = 0; index < band.blocks.size(); ++index) {
         RdoBlock& block = band.blocks[index];
+        const float longest = longest_of[static_cast<std::size_t>(band.part_of[index])];
         for (std::size_t k = 0; k < 16; ++k)
             block.most[k] = block.inside[k] == 0.0f ? 1e30f : std::max(longest, band.plain_chords[16 * index + k]);
     }
@@ -74,7 +80,7 @@ void measure_improved(RdoBand& band) {
             break;
         }
         band.improved_angles[index] = rdo_angles(band, index, bytes).sum;
-        band.improved_sum += band.improved_angles[index];
+        band.part(index).improved_sum += band.improved_angles[index];
     }
 }
 
@@ -85,7 +91,8 @@ double degrees_of_chord(float chord) {
     return half >= 1.0 ? 180.0 : 2.0 * kDegreesOfRadian * math::atan(half / std::sqrt(1.0 - half * half));
 }
 
-float longest_chord(const RdoOptions& options, double mean) {
+float longest_chord(const RdoOptions& options, const RdoPart& part) {
+    const double mean = part.plain_sum / part.texels;
     const auto usual = static_cast<float>(std::min(180.0, kRdoMaxOfMean * (mean + static_cast<double>(options.mean))));
     return chord_of(options.max > 0.0f ? options.max : usual);
 }
@@ -112,8 +119,8 @@ RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* by
     return angles;
 }
 
-RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
-                  const std::byte* blocks) {
+RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
+                  const PackOptions& options, const std::byte* blocks) {
     constexpr int kReach = 2;  // farther steps gain little
     RdoBand band;
     band.encoding = options.encoding;
@@ -128,13 +135,16 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const
         const bool is_eac = keeps_slope(half_kind(band.encoding, 0));
         if (!is_eac) improve_angles(row, options.encoding, kReach, band.improved.data() + r * pitch);
     }
+    band.set_parts(RdoParts(level, first).of_blocks({kBlockEdge, kBlockEdge}, blocks_across(level.width), count));
     band.plain_chords.resize(16 * band.blocks.size());
     for (std::size_t index = 0; index < band.blocks.size(); ++index) {
         const std::byte* const bytes = band.plain.data() + kBandBlockBytes * static_cast<std::ptrdiff_t>(index);
         chords_of(band, index, bytes, band.plain_chords.data() + 16 * index);
-        band.plain_sum += rdo_angles(band, index, bytes).sum;
+        RdoPart& part = band.part(index);
+        for (const float inside : band.blocks[index].inside) part.texels += static_cast<double>(inside);
+        part.plain_sum += rdo_angles(band, index, bytes).sum;
     }
-    set_limits(longest_chord(options.rdo, band.plain_sum / band.texels), band);
+    set_limits(options.rdo, band);
     measure_improved(band);
     return band;
 }

@@ -36,15 +36,16 @@ struct RdoBand : RdoBlocks {
     std::vector<double> improved_angles;  // the sum of the angles of each block of `improved`
 };
 
-// Reads `count` rows of blocks, which encode_blocks() has written one after the other. Throws std::bad_alloc.
-RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
-                  const std::byte* blocks);
+// Reads `count` rows of blocks, which encode_blocks() has written one after the other; the first of them begins at row
+// `first` of this level. Throws std::bad_alloc.
+RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
+                  const PackOptions& options, const std::byte* blocks);
 
 // The angle of a chord between unit vectors, in degrees.
 double degrees_of_chord(float chord);
 
-// The longest chord that a texel of a band may get, whose mean angle without optimisation is `mean`.
-float longest_chord(const RdoOptions& options, double mean);
+// The longest chord that a texel of a part may get.
+float longest_chord(const RdoOptions& options, const RdoPart& part);
 
 // A normal with x and y within [-1, 1], made unit.
 struct RdoNormal {

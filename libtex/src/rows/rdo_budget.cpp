@@ -85,6 +85,7 @@ float RdoBudget::next(double growth) {
 }
 
 bool RdoBudget::has_wandered() const {
+    if (factors_.empty()) return false;  // the pass has stopped before it came to this part
     // The last runs have little left to correct with, and weigh little.
     const std::size_t all = plan_.runs.size();
     const std::size_t last = std::min(factors_.size(), all - all / 6);

@@ -33,7 +33,7 @@ public:
 private:
     void set_lambda(float lambda) override;
     void keep_block(int block) override;
-    void choose_block(int block, const RdoBudget* budget) override;
+    void choose_block(int block) override;
     void start(int block);
     void add_near(int half, int distance);
     void find_firsts(int block);
@@ -60,7 +60,7 @@ private:
 };
 
 HalvesPass::HalvesPass(const RdoBand& band, const ByteCounts& literals)
-    : RdoRuns(band.count()), band_(band), literal_bits_(literal_bits(literals)),
+    : RdoRuns(band), band_(band), literal_bits_(literal_bits(literals)),
       sources_(band.encoding, band.window, band.count()) {}
 
 void HalvesPass::set_lambda(float lambda) {
@@ -168,7 +168,7 @@ void HalvesPass::find_firsts(int block) {
     }
 }
 
-void HalvesPass::choose_block(int block, const RdoBudget* budget) {
+void HalvesPass::choose_block(int block) {
     start(block);
     find_firsts(block);
     const int y = 2 * block + 1;
@@ -199,8 +199,7 @@ void HalvesPass::choose_block(int block, const RdoBudget* budget) {
     const auto index = static_cast<std::size_t>(block);
     const RdoAngles angles = rdo_angles(band_, index, bytes);
     const double growth = angles.sum - band_.improved_angles[index];
-    if (budget != nullptr && !budget->allows(result_.growth + growth)) return keep_block(block);
-    result_.growth += growth;
+    if (!spend(block, growth)) return keep_block(block);
     result_.most_raised = std::max(result_.most_raised, angles.most_raised);
     for (int to = 0; to < 2; ++to) write(2 * block + to, best[to]);
 }

@@ -22,8 +22,8 @@ namespace {
 constexpr double kMillionths = 1e6;
 
 struct RdoPlan {
-    RdoGrowth growth;
-    ByteCounts literals;
+    std::vector<RdoGrowth> growths;  // of each part
+    ByteCounts literals{};
 };
 
 // What a sample says about all runs: a run grows as the sampled one beside it does, but one sample is not much.
@@ -38,36 +38,72 @@ std::vector<double> spread_runs(const std::vector<double>& sampled, int stride, 
     return growths;
 }
 
-// Finds by samples how to spend `most` degrees more than the improved literals have.
-RdoPlan plan_of(const RdoBlocks& band, const RdoMakeRuns& make, double most) {
-    const int runs = rdo_runs(band.count());
-    const int stride = rdo_sample_stride(runs);
-    std::size_t sampled = 0;
-    for (int run = 0; run < runs; ++run) {
-        const std::size_t first = std::size_t{kRdoRun} * static_cast<std::size_t>(run);
-        if (is_sampled(run, stride)) sampled += std::min<std::size_t>(kRdoRun, band.count() - first);
-    }
-    const double part = static_cast<double>(sampled) / static_cast<double>(band.count());
-    // A good first lambda: the mean angle that is allowed, shared among the bits that are usually saved.
-    const double allowed = most / band.texels;
-    const double mean = band.improved_sum / band.texels;
-    const double texels = static_cast<double>(band.block_texels) / 16.0;
-    RdoLambdaSearch search(part * most, texels * 0.6 * std::sqrt(allowed * (mean + 0.1 * allowed)));
-    ByteCounts plain{};
-    for (const std::byte byte : band.plain) ++plain[std::to_integer<std::size_t>(byte)];
-    RdoPlan plan{
-        {search.lambda(), search.most_lambda(), search.power(), std::vector<double>(static_cast<std::size_t>(runs))},
-        plain};
-    constexpr int kMostSamples = 5;
-    for (int k = 0; k < kMostSamples && !search.is_done(); ++k) {
-        const float lambda = search.lambda();
-        const RdoSample sample = make(plan.literals)->sample(lambda, stride);
+// Finds by samples the lambda of a part that spends `most` degrees more than its improved literals have.
+class PartSearch {
+public:
+    PartSearch(const RdoBlocks& band, const RdoPart& part, double most)
+        : runs_(rdo_runs(static_cast<std::size_t>(part.blocks))), stride_(rdo_sample_stride(runs_)),
+          search_(sampled_part(part) * most, first_lambda(band, part, most)),
+          growth_{search_.lambda(), search_.most_lambda(), search_.power(),
+                  std::vector<double>(static_cast<std::size_t>(runs_))} {}
+
+    [[nodiscard]] bool is_done() const { return search_.is_done(); }
+    [[nodiscard]] RdoSampled next() const { return {search_.lambda(), is_done() ? 0 : stride_}; }
+    // Returns whether the sample is the closest one so far.
+    bool add(const std::vector<double>& sampled) {
+        const float lambda = search_.lambda();
         double growth = 0.0;
-        for (const double one : sample.growths) growth += one;
-        if (search.add(growth))
-            plan = {{lambda, search.most_lambda(), 0.0, spread_runs(sample.growths, stride, runs)}, sample.literals};
+        for (const double one : sampled) growth += one;
+        if (!search_.add(growth)) return false;
+        growth_ = {lambda, search_.most_lambda(), 0.0, spread_runs(sampled, stride_, runs_)};
+        return true;
     }
-    plan.growth.power = search.power();
+    [[nodiscard]] RdoGrowth growth() const {
+        RdoGrowth found = growth_;
+        found.power = search_.power();
+        return found;
+    }
+
+private:
+    // The part of the blocks that a sample takes.
+    [[nodiscard]] double sampled_part(const RdoPart& part) const {
+        int sampled = 0;
+        for (int run = 0; run < runs_; ++run) {
+            if (is_sampled(run, stride_)) sampled += std::min(kRdoRun, part.blocks - kRdoRun * run);
+        }
+        return static_cast<double>(sampled) / static_cast<double>(part.blocks);
+    }
+    // A good one: the mean angle that is allowed, shared among the bits that are usually saved.
+    static double first_lambda(const RdoBlocks& band, const RdoPart& part, double most) {
+        const double allowed = most / part.texels, mean = part.improved_sum / part.texels;
+        const double texels = static_cast<double>(band.block_texels) / 16.0;
+        return texels * 0.6 * std::sqrt(allowed * (mean + 0.1 * allowed));
+    }
+
+    const int runs_, stride_;
+    RdoLambdaSearch search_;
+    RdoGrowth growth_;
+};
+
+// Finds how to spend `most` degrees in each part.
+RdoPlan plan_of(const RdoBlocks& band, const RdoMakeRuns& make, const std::vector<double>& most) {
+    std::vector<PartSearch> searches;
+    searches.reserve(band.parts.size());
+    for (std::size_t k = 0; k < band.parts.size(); ++k) searches.emplace_back(band, band.parts[k], most[k]);
+    RdoPlan plan;
+    for (const std::byte byte : band.plain) ++plan.literals[std::to_integer<std::size_t>(byte)];
+    constexpr int kMostSamples = 5;
+    const auto is_done = [](const PartSearch& search) { return search.is_done(); };
+    for (int k = 0; k < kMostSamples && !std::all_of(searches.begin(), searches.end(), is_done); ++k) {
+        std::vector<RdoSampled> parts;
+        for (const PartSearch& search : searches) parts.push_back(search.next());
+        const RdoSample sample = make(plan.literals)->sample(parts);
+        bool is_closest = false;
+        for (std::size_t part = 0; part < parts.size(); ++part)
+            is_closest = (parts[part].stride > 0 && searches[part].add(sample.growths[part])) || is_closest;
+        if (is_closest) plan.literals = sample.literals;
+    }
+    for (const PartSearch& search : searches) plan.growths.push_back(search.growth());
     return plan;
 }
 
@@ -86,18 +122,24 @@ bool is_gain(const RdoBlocks& band, const Optimised& best, std::size_t plain_siz
     return zstd_size(best.result.blocks) < zstd_size(band.plain);
 }
 
-// Spends `most` degrees. The result is not whole if nothing is gained.
-Optimised optimise(const RdoBlocks& band, const RdoMakeRuns& make, double most) {
+// Spends `most` degrees of each part. The result is not whole if nothing is gained.
+Optimised optimise(const RdoBlocks& band, const RdoMakeRuns& make, const std::vector<double>& most) {
     RdoPlan plan = plan_of(band, make, most);
     constexpr int kFastLevel = 5;
     const std::size_t plain_size = zstd_size(band.plain, kFastLevel);
     Optimised best{{}, plain_size + plain_size / 50};
     constexpr int kMostPasses = 3;
     for (int pass = 1; pass <= kMostPasses; ++pass) {
-        RdoBudget budget(plan.growth, most);
-        RdoResult result = make(plan.literals)->run(budget, pass == 1);
-        const bool has_wandered = budget.has_wandered();
-        plan = {budget.better_plan(result.growth), result.literals};
+        std::vector<RdoBudget> budgets;
+        for (std::size_t k = 0; k < most.size(); ++k) budgets.emplace_back(plan.growths[k], most[k]);
+        RdoResult result = make(plan.literals)->run(budgets, pass == 1);
+        std::vector<bool> wandered;
+        for (std::size_t k = 0; k < most.size(); ++k) {
+            wandered.push_back(budgets[k].has_wandered());
+            plan.growths[k] = budgets[k].better_plan(result.growths[k]);
+        }
+        plan.literals = result.literals;
+        const bool has_wandered = !result.is_whole || is_half(band, wandered);
         if (result.is_whole) {
             const std::size_t size = zstd_size(result.blocks, kFastLevel);
             if (size >= best.size) break;
@@ -111,18 +153,23 @@ Optimised optimise(const RdoBlocks& band, const RdoMakeRuns& make, double most) 
 
 void optimise_blocks(const RdoBlocks& band, const RdoMakeRuns& make, const PackOptions& options, std::byte* blocks,
                      RdoTally* tally) {
-    const double most = static_cast<double>(options.rdo.mean) * band.texels;
-    const Optimised best = optimise(band, make, most + band.plain_sum - band.improved_sum);
-    double sum = band.plain_sum;
-    double most_raised = 0.0;
-    if (best.result.is_whole) {
-        std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
-        sum = band.improved_sum + best.result.growth;
-        most_raised = best.result.most_raised;
-    }
+    std::vector<double> most;
+    for (const RdoPart& part : band.parts)
+        most.push_back(static_cast<double>(options.rdo.mean) * part.texels + part.plain_sum - part.improved_sum);
+    const Optimised best = optimise(band, make, most);
+    const bool is_plain = !best.result.is_whole;
+    if (!is_plain) std::copy(best.result.blocks.begin(), best.result.blocks.end(), blocks);
     if (tally == nullptr) return;
-    tally->add({static_cast<std::int64_t>(band.texels), std::llround(kMillionths * band.plain_sum),
-                std::llround(kMillionths * sum), (sum - band.plain_sum) / band.texels, most_raised});
+    RdoTally::Band sums{0, 0, 0, 0.0, is_plain ? 0.0 : best.result.most_raised};
+    for (std::size_t k = 0; k < band.parts.size(); ++k) {
+        const RdoPart& part = band.parts[k];
+        const double sum = is_plain ? part.plain_sum : part.improved_sum + best.result.growths[k];
+        sums.texels += static_cast<std::int64_t>(part.texels);
+        sums.plain += std::llround(kMillionths * part.plain_sum);
+        sums.optimised += std::llround(kMillionths * sum);
+        sums.most_growth = std::max(sums.most_growth, (sum - part.plain_sum) / part.texels);
+    }
+    tally->add(sums);
 }
 
 }  // namespace
@@ -162,25 +209,28 @@ bool is_optimised(const PackOptions& options) { return can_optimise(options.enco
 
 int rdo_band_rows(const PackOptions& options, int base_width) {
     constexpr std::int64_t kBandBlocks = 16384;
+    constexpr int kBandTexels = 64;  // lower parts of squares are too small for budgets
     const Extent block = format_info(encoding_info(options.encoding).format).block;
     if (!is_optimised(options)) return kBlockEdge;
     int rows = 1;
-    while (std::int64_t{rows} * blocks_across(base_width, block.width) < kBandBlocks) rows *= 2;
+    while (std::int64_t{rows} * blocks_across(base_width, block.width) < kBandBlocks ||
+           rows * block.height < kBandTexels)
+        rows *= 2;
     return block.height * rows;
 }
 
-void optimise_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
-                   std::byte* blocks, RdoTally* tally) {
+void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
+                   const PackOptions& options, std::byte* blocks, RdoTally* tally) {
     assert(is_optimised(options) && has_halves(options.encoding));
-    const RdoBand band = read_band(rows, count, options, blocks);
+    const RdoBand band = read_band(rows, count, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_pass(band, literals); }, options, blocks, tally);
 }
 
-void optimise_astc_band(const float* xy, Extent extent, const PackOptions& options, std::byte* blocks,
-                        RdoTally* tally) {
+void optimise_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
+                        std::byte* blocks, RdoTally* tally) {
     assert(is_optimised(options) && !has_halves(options.encoding));
-    const RdoAstcBand band = read_astc_band(xy, extent, options, blocks);
+    const RdoAstcBand band = read_astc_band(xy, height, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_astc_pass(band, literals); }, options, blocks, tally);
 }

@@ -12,6 +12,7 @@
 #include <tex/pack.h>
 
 #include "kernels/encode.h"
+#include "rows/rdo_parts.h"
 
 namespace tex::inline v1 {
 
@@ -54,12 +55,14 @@ private:
 // optimised.
 [[nodiscard]] int rdo_band_rows(const PackOptions& options, int base_width);
 
-// Optimises the `count` rows of blocks of a band, which hold what encode_blocks() has written, one after the other.
-// Precondition: is_optimised(options), and x and y have a half each. Throws std::bad_alloc.
-void optimise_band(const std::function<BlockRow(int row)>& rows, int count, const PackOptions& options,
-                   std::byte* blocks, RdoTally* tally);
+// Optimises the `count` rows of blocks of a band, which hold what encode_blocks() has written, one after the other. The
+// band begins at row `first` of this level. Precondition: is_optimised(options), and x and y have a half each. Throws
+// std::bad_alloc.
+void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
+                   const PackOptions& options, std::byte* blocks, RdoTally* tally);
 
-// The same for ASTC, of what encode_astc() has written for these texels.
-void optimise_astc_band(const float* xy, Extent extent, const PackOptions& options, std::byte* blocks, RdoTally* tally);
+// ASTC: of what encode_astc() has written for `height` rows of texels.
+void optimise_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
+                        std::byte* blocks, RdoTally* tally);
 
 }  // namespace tex::inline v1

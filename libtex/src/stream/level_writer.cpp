@@ -168,9 +168,10 @@ LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent e
     const int band_rows = rdo_band_rows(options, extent.width);
     const Swizzle swizzle = swizzle_with(options.encoding, others);
     return {{encoding.format, extent, levels, swizzle, true, options.y_axis, options.y_known},
-            [options, others, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
+            [options, others, extent, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
                 RdoTally* const tally = tallies ? &tallies->of(rows.level) : nullptr;
-                pack_rows(rows.map, others, rows.height, options, 0, rows.height, out, band_rows, tally, plain);
+                const RdoBands bands{band_rows, level_extent(extent, rows.level), rows.first};
+                pack_rows(rows.map, others, rows.height, options, 0, rows.height, out, bands, tally, plain);
             },
             band_rows,
             tallies};
