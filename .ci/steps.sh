@@ -76,6 +76,14 @@ step() {
     fi
 }
 
+# compile_alone COMPILER: each source and each private header by itself. The other builds compile folders as one source,
+# which hides a missing include.
+compile_alone() {
+    cmake --preset dev -B build/alone -DBUILD_TESTING=OFF -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$results/alone.configure.log" ||
+        { cat "$results/alone.configure.log"; return 1; }
+    if tests/alone.py build/alone "$1"; then count alone 1 0; else count alone 1 1; return 1; fi
+}
+
 # preset NAME "TARGET..." CTEST_OPTION...: builds the targets of a preset, or the whole preset, and runs tests.
 preset() {
     local name=$1 targets=()

@@ -167,48 +167,6 @@ while read -r name files_of_it; do
     [ -z "$name" ] || complain "two types are called $name: $files_of_it"
 done <<<"$twice"
 
-# Finds constants and functions of the same name in the unnamed namespaces of sources that some presets compile as one:
-# those of a folder, and tests with the same first letter (tex_by_folder and tex_by_letter in the CMakeLists.txt).
-# Functions with parameters of other types do not count. Sources of Windows are not compiled with others.
-mapfile -t unity < <(select_files '^(libtex/src|tools/[a-z]+|tests/(unit|cli))/.*\.cpp$' |
-    grep -vE '/kernels/|^tools/(mesh-)?reader/|src/preview\.cpp$|cli/process_|_(windows|bsd|other)\.cpp$')
-twice=$(awk '
-    FNR == 1 {
-        depth = 0
-        group = FILENAME
-        if (group ~ /^tests/) sub(/[^\/]*$/, substr(group, match(group, /[^\/]*$/), 1), group)
-        else sub(/\/[^\/]*$/, "", group)
-    }
-    /^(inline )?namespace .*\{$/ { space[++depth] = $(NF - 1) == "namespace" ? "" : $(NF - 1) }
-    /^}  \/\/ namespace/ { --depth }
-    depth == 0 || space[depth] != "" { next }
-    /^[A-Za-z].* k[A-Z][A-Za-z0-9]*(\[.*\])?( =|\{| \{)/ {
-        name = $0
-        sub(/(\[.*\])?( =|\{| \{).*/, "", name)
-        sub(/.*[ *&]/, "", name)
-        seen(name)
-        next
-    }
-    /^[A-Za-z].*[a-z_0-9]\(.*\) (\{$|\{ )/ && !/ operator/ {
-        name = parameters = $0
-        sub(/\(.*/, "", name)
-        sub(/.*[ *&]/, "", name)
-        sub(/^[^(]*\(/, "", parameters)
-        sub(/\) \{.*/, "", parameters)
-        gsub(/ = [^,]*/, "", parameters)
-        gsub(/ ?[a-z_0-9]+,/, ",", parameters)
-        sub(/ ?[a-z_0-9]+$/, "", parameters)
-        seen(name "(" parameters ")")
-    }
-    function seen(name,    key, k) {
-        key = group " "
-        for (k = 1; k <= depth; ++k) key = key space[k] "::"
-        key = key name
-        if (key in first && first[key] != FILENAME) print name, "in", first[key], "and", FILENAME
-        else first[key] = FILENAME
-    }' "${unity[@]}")
-[ -z "$twice" ] || complain "names that clash if a folder is compiled as one source"$'\n'"$twice"
-
 # -- who may know what ------------------------------------------------------------------------------------------
 mapfile -t library < <(select_files '^libtex/src/.*\.(cpp|h)$')
 mapfile -t public < <(select_files '^libtex/include/')

@@ -3,8 +3,8 @@
 # nightly.sh: what takes too long for the gate (.ci/run), by hand: at the latest before an issue is called done.
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
-#     tests/nightly.sh [STEP...]    all steps, or the named ones: long scalar commands slurm arm64 tsan tidy fuzz
-#                                   package abi engines platforms portable windows release
+#     tests/nightly.sh [STEP...]    all steps, or the named ones: alone long scalar commands slurm arm64 tsan tidy
+#                                   fuzz package abi engines platforms portable windows release
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -233,6 +233,7 @@ need_packages "${build_packages[@]}" "${test_packages[@]}" "${gate_packages[@]}"
 if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache; fi
 
 build_release
+step alone compile_alone c++
 step long long
 step scalar scalar
 step commands commands
