@@ -81,7 +81,7 @@ void divide_by_alpha(const ImageSpec& spec, std::vector<std::byte>& bytes) {
 
 }  // namespace
 
-// As in OpenImageIO's own writers, a file that was not closed is finished. If pixels are missing, there is no file.
+// A file that was not closed is finished, as OpenImageIO's own writers do. If pixels are missing, there is no file.
 Output::~Output() { close(); }
 
 const char* Output::format_name() const { return kFormatName; }

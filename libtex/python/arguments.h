@@ -40,7 +40,7 @@ py::str str_of(std::string_view text);
 py::list strs_of(const std::vector<std::string>& texts);
 // "; did you mean 'x'?" if one of `names` is like `name`, or empty.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& names);
-// The same text, which is never freed.
+// A copy of the text, which is never freed.
 std::string_view kept_text(const std::string& text);
 // "BC5_SNORM" as "bc5-snorm"
 std::string plain_word(std::string word);

@@ -40,7 +40,7 @@ public:
     explicit Reader(py::dict keywords, const std::vector<Parameter>& others = {}) : keywords_(std::move(keywords)) {
         for (const Parameter& other : others) names_.push_back(other.name);
     }
-    // Of the dict that is the argument called `name`.
+    // Reads the dict that is the argument called `name`.
     Reader(py::dict keywords, const char* name) : keywords_(std::move(keywords)), of_(std::string(name) + ": ") {}
 
     template <class T>

@@ -135,7 +135,7 @@ private:
         return {};
     }
 
-    // The same unless the outputs are up to date. They do not count as such if an input changes meanwhile.
+    // Runs the job unless the outputs are up to date. They are not if an input changes meanwhile.
     [[nodiscard]] Result<void> update(Job& job) {
         const std::optional<std::int64_t> change = latest_change(job.task);
         if (change && is_up_to_date(job.task, *change)) {

@@ -34,14 +34,14 @@ struct FileStatus {
 
 // What a path leads to. Nothing if there is no such file.
 [[nodiscard]] std::optional<FileStatus> status_of(const std::string& path);
-// The same for the last name itself, if that is a link.
+// What the last name is itself, if it is a link.
 [[nodiscard]] std::optional<FileStatus> status_of_link(const std::string& path);
 [[nodiscard]] std::optional<FileStatus> status_of_open(int fd);
 
 // A file that is read as bytes.
 using ReadFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 [[nodiscard]] ReadFile open_to_read(const std::string& path);
-// The same without waiting for the writer of a FIFO, and with its status. `links`: whether a link is followed.
+// Opens without waiting for the writer of a FIFO, and returns its status. `links`: whether a link is followed.
 enum class Links { followed, refused };
 [[nodiscard]] ReadFile open_at_once(const std::string& path, Links links, FileStatus& status);
 // Reads up to `count` bytes; 0 at the end of the file. Nothing if the system refuses.

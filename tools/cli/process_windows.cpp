@@ -93,7 +93,7 @@ BOOL WINAPI on_event(DWORD kind) {
     end_now(kInterrupted);
 }
 
-// As in process_posix.cpp.
+// See process_posix.cpp.
 [[noreturn]] void on_terminate() {
     static std::atomic_flag is_ending;
     try {

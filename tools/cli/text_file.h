@@ -11,7 +11,7 @@
 
 namespace tex::cli {
 
-// Of files whose size nothing else limits. It ends the reading of devices such as /dev/zero.
+// The most bytes of files whose size nothing else limits. It ends the reading of devices such as /dev/zero.
 inline constexpr std::size_t kMostOfTextFile = std::size_t{1} << 30;
 
 // The bytes of a file; "-" is standard input. Errors: io; bad_data, if there are more than `most` bytes (none of them
@@ -25,7 +25,7 @@ inline constexpr std::size_t kMostOfTextFile = std::size_t{1} << 30;
 [[nodiscard]] Result<void> write_text_file(const std::string& path, const std::string& text,
                                            const WriteOptions& options = {});
 
-// The same for reports and other documents: a link that has the name is replaced, so that nobody can choose by a link
+// Writes reports and other documents: a link that has the name is replaced, so that nobody can choose by a link
 // which file is written.
 [[nodiscard]] Result<void> write_document(const std::string& path, const std::string& text, WriteOptions options = {});
 

@@ -53,7 +53,7 @@ struct CheckConfig {
 // io.
 [[nodiscard]] Result<CheckConfig> read_check_config(const std::string& path);
 
-// The same from memory. `path` appears in messages.
+// Parses a configuration in memory. `path` appears in messages.
 [[nodiscard]] CheckConfig parse_check_config(const std::string& path, const std::string& text);
 
 }  // namespace tex::cli

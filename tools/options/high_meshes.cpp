@@ -148,7 +148,7 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
     if (!matched.lone_low.empty())
         job.warn(fmt::format("no {} of the high mesh belongs to {}: their texels are missed", what,
                              quoted_list(matched.lone_low)));
-    // Of tiles, each has its own parts.
+    // Each tile has its own parts.
     if (!matched.lone_high.empty() && !job.task.is_tile_of_mesh())
         job.warn(fmt::format("no {} of the low mesh belongs to {} of the high one: no ray meets them", what,
                              quoted_list(matched.lone_high)));

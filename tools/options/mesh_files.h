@@ -24,7 +24,7 @@ struct FileState {
     friend bool operator==(const FileState&, const FileState&) = default;
 };
 
-// That of all files of some meshes.
+// The state of all files of some meshes.
 [[nodiscard]] std::vector<FileState> states_of(const std::vector<std::string>& meshes);
 [[nodiscard]] bool are_current(const std::vector<FileState>& states);
 

@@ -12,7 +12,7 @@ namespace tex::cli {
 // pixels stand for several texels, and show missed ones first, then hit ones. The planes are R, G and B.
 [[nodiscard]] Image missed_picture(const Plane<TexelOrigin>& origin, int side);
 
-// The same with missed texels white and all others black.
+// A picture with missed texels white and all others black.
 [[nodiscard]] Image missed_mask(const Plane<TexelOrigin>& origin, int side);
 
 }  // namespace tex::cli

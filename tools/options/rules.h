@@ -43,7 +43,7 @@ public:
     // The options and the configuration together, for a file that no [[rule]] of the configuration matches. Valid after
     // read().
     [[nodiscard]] const Demands& demands() const { return demands_; }
-    // The same for the file `path`.
+    // The demands on the file `path`.
     [[nodiscard]] const Demands& demands_of(const std::string& path) const;
 
 private:

@@ -94,7 +94,7 @@ public:
     // them, and with --decoder, another command decodes an input in the same way.
     [[nodiscard]] std::string input_arguments() const;
 
-    // The same for a mesh of of_low(): preview-normals then draws it, as far as it needs one node at most.
+    // Arguments for a mesh of of_low(): preview-normals then draws it, if it needs one node at most.
     [[nodiscard]] std::string low_arguments(const MeshSpace& low) const;
 
     // The mesh files, with those that hold buffers of them.
@@ -108,13 +108,13 @@ public:
     [[nodiscard]] Result<MeshSpace> input(int tile, const ReadOptions& read, const Execution& execution) const;
     [[nodiscard]] Result<MeshSpace> output(int tile, const ReadOptions& read, const Execution& execution) const;
 
-    // The same of a map in a model, with its own mesh, UVs and transform. --to-mesh has its material by name.
+    // The space of a map in a model, with its own mesh, UVs and transform. --to-mesh has its material by name.
     [[nodiscard]] Result<MeshSpace> input(const ModelInput& map, const ReadOptions& read,
                                           const Execution& execution) const;
     [[nodiscard]] Result<MeshSpace> output(const ModelInput& map, const ReadOptions& read,
                                            const Execution& execution) const;
 
-    // The same of an input that is a mesh: its triangles in the tile of --tile, of the task, or all.
+    // The space of an input that is a mesh: its triangles in the tile of --tile, of the task, or all.
     [[nodiscard]] Result<MeshSpace> of_low(const Task& task, const ReadOptions& read, const Execution& execution) const;
     // The tiles of such a mesh that outputs are made for: that of --tile, or those that have triangles.
     [[nodiscard]] std::vector<int> tiles_of_low(const std::string& file, const ReadOptions& read) const;

@@ -22,7 +22,7 @@ class Canvas {
 public:
     // The header describes the picture as the file stores it.
     explicit Canvas(ReaderHeader& header) : header_(header) {}
-    // As begin_picture(); afterwards the header has the extent of the turned picture.
+    // Calls begin_picture(); afterwards the header has the extent of the turned picture.
     bool begin(const Task& task);
     void put(const void* rows, int count);
     void end();  // after the last row

@@ -90,7 +90,7 @@ struct ReadOptions {
 // to the smaller of two sizes: the size that the file claims and the size that its bytes can hold.
 [[nodiscard]] TEX_API Result<Image> read_image(const std::string& path, const ReadOptions& options = {});
 
-// The same for the bytes of a file in memory, which messages call `name`.
+// Reads the bytes of a file in memory, which messages call `name`.
 [[nodiscard]] TEX_API Result<Image> read_image(std::span<const std::byte> bytes, const std::string& name,
                                                const ReadOptions& options = {});
 
@@ -250,7 +250,7 @@ TEX_API void remove_unfinished_files() noexcept;
 // read_image().
 [[nodiscard]] TEX_API Result<Texture> read_texture(const std::string& path, const ReadOptions& options = {});
 
-// The same for the bytes of a file in memory, which messages call `name`.
+// Reads the bytes of a file in memory, which messages call `name`.
 [[nodiscard]] TEX_API Result<Texture> read_texture(std::span<const std::byte> bytes, const std::string& name,
                                                    const ReadOptions& options = {});
 

@@ -696,7 +696,7 @@ struct TransferInputs {
     // With RayMode::straight, k of each place of the map, from 0 (smooth) to 1 (straight), in place of the distance to
     // hard edges. A picture of any size, which is filtered bilinearly and lies over the map.
     const Plane<float>* skew = nullptr;
-    // The same of a factor for `front`, 0 or more.
+    // A picture like `skew`, of a factor for `front`, 0 or more.
     const Plane<float>* offset = nullptr;
     // Rays from triangles of the low mesh meet the parts of the high one that have the same number: one for each
     // triangle, and one for each part. Rays of a number that no part has are missed. Second rays meet all parts. Both
@@ -799,7 +799,7 @@ struct Model {
 // Errors: those of read_mesh(); unsupported (the file is not glTF; it is "-").
 [[nodiscard]] TEX_API Result<Model> read_model(const std::string& path, const MeshReadOptions& options = {});
 
-// The same without geometry: of the mesh, the materials alone. Errors: those of read_model() that do not come from
+// Reads no geometry: of the mesh, the materials alone. Errors: those of read_model() that do not come from
 // geometry.
 [[nodiscard]] TEX_API Result<Model> read_model_maps(const std::string& path, const MeshReadOptions& options = {});
 

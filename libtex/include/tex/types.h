@@ -111,7 +111,7 @@ struct Error {
     // "FILE: reason", or just the reason if no file is named.
     [[nodiscard]] std::string message() const { return file.empty() ? reason : file + ": " + reason; }
 
-    // The same error for the file `path`, unless the error already names a file.
+    // This error for the file `path`, unless it already names a file.
     [[nodiscard]] Error of(const std::string& path) const { return {code, file.empty() ? path : file, reason, detail}; }
 };
 
@@ -186,7 +186,7 @@ struct Execution {
     // that is not a plane (bytes of textures, lists), use the heap. May be empty. Must not throw.
     std::function<std::shared_ptr<void>(std::size_t bytes)> allocate = {};
 
-    // The same without progress.
+    // This execution without progress.
     [[nodiscard]] Execution quiet() const { return {threads, {}, parallel, allocate}; }
 };
 

@@ -45,8 +45,8 @@ struct AstcLines {
     int ends[3][2][2] = {};                        // by partition and channel (R, A), from 0 to 255
 };
 
-// Those of a block as encode_astc() writes it: of two planes, the second one is that of alpha. None of a block of one
-// colour.
+// The lines of a block as encode_astc() writes it; the second of two planes is alpha's. A block of one colour has none:
+// the result is then empty.
 [[nodiscard]] std::optional<AstcLines> read_astc_lines(Extent block, const std::byte* bytes);
 
 }  // namespace tex::inline v1

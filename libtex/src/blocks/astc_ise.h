@@ -32,7 +32,7 @@ struct AstcBits {
         }
     }
 
-    // The same bits from the other end.
+    // These bits from the other end.
     [[nodiscard]] AstcBits reversed() const;
 };
 

@@ -52,7 +52,7 @@ struct AstcValues {
 // and more are not those from others.
 struct AstcOffsets {
     float nearest[256], lower[256], upper[256];  // bases, as endpoints in AstcValues
-    // Of offsets, at 32 + offset, and 64 places farther for bases from 128.
+    // Offsets stand at 32 + offset, and 64 places farther for bases from 128.
     float nearest_offset[128], lower_offset[128], upper_offset[128];
     std::uint8_t stored_base[128];       // by the lower 7 bits of the base
     std::int16_t stored_offset[2 * 64];  // by the place of the offset: the next lower one that can be stored, or -1

@@ -16,7 +16,7 @@ inline constexpr float kAstcOne = 65536.0f / 257.0f;
 [[nodiscard]] inline float astc_void_value(int code) { return astc_value(code) * kAstcOne; }
 [[nodiscard]] int astc_void_code(float value);
 
-// Of luminance x and alpha y.
+// Writes a block of one colour: luminance x and alpha y.
 void write_astc_void(int x, int y, std::byte* block);
 
 }  // namespace tex::inline v1

@@ -14,7 +14,7 @@ namespace tex::inline v1 {
 bool is_bake(int32_t kernel, float gaussian_sigma, int32_t wrap_x, int32_t wrap_y);
 BakeOptions bake_options(int32_t kernel, float gaussian_sigma);
 
-// That of gradient_of(), which allocates.
+// The radius of gradient_of(), which allocates.
 int gradient_radius(const BakeOptions& options);
 
 // What a Gradient and BakeRows take.

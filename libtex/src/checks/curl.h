@@ -74,10 +74,10 @@ struct Curl {
 
 Curl measure_curl(const Stored& stored);
 
-// The same on several threads. Reports no progress. Errors: out_of_memory.
+// Measures on several threads. Reports no progress. Errors: out_of_memory.
 Result<Curl> measure_curl(const Stored& stored, const Execution& execution);
 
-// The same for parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
+// Measures parts of a map of this extent; `slopes` returns the slopes of a part, once for each.
 Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::function<Slopes(std::size_t)>& slopes);
 
 // How diagonal the structures are, at a quarter of the resolution, from 0 (without a preferred direction, or along the

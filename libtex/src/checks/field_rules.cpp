@@ -12,7 +12,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// Of the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
+// Between the changes of p and q across their own directions. After a turn by the angle a, bumps without a preferred
 // direction have cos(2 a) / (1 + 2 sin(a)^2) left: 0.76 after 15 degrees.
 constexpr double kSoundCorrelation = 0.9;
 constexpr double kMostBehind = 0.05;   // share of texels that face away: more is object space

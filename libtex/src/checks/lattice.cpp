@@ -23,7 +23,7 @@ constexpr double kMostRate = 51.0;
 constexpr double kRateStep = 0.25;
 constexpr float kSteep = 2.0f;  // the other slope: there z has few codes of 8 bits, and quotients by them form a comb
 constexpr double kLeastShare = 0.1;  // of the examined texels: a few gentle slopes in a steep map prove nothing
-// Of the examined texels, those that slope along both axes. Lines and bevels along the axes have few slopes, because
+// Share of the examined texels that slope along both axes. Lines and bevels along the axes have few slopes, because
 // all their profiles are the same, and few slopes fit some lattice.
 constexpr double kLeastOblique = 0.025;
 constexpr float kFlat = 0.015f;  // two codes of 8 bits

@@ -14,7 +14,7 @@ namespace {
 constexpr double kWrongShare = 0.01;
 constexpr double kRightShare = 0.002;
 
-// The same format with the other sign, of formats with two channels: vectors of x and y alone show by themselves
+// Returns a format of two channels with the other sign: vectors of x and y alone show by themselves
 // whether they can be right.
 std::optional<Format> twin_of(Format format) {
     FormatInfo info = format_info(format);

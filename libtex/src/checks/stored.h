@@ -49,7 +49,7 @@ struct Rect {
 // Rules that count texels do not sample.
 std::vector<Rect> sample_windows(Extent extent);
 
-// The same with squares of `size` texels: the whole map, if it has no more texels than 16 of them.
+// Windows of `size` texels squared: the whole map, if it has no more texels than 16 of them.
 std::vector<Rect> sample_windows(Extent extent, int size);
 
 // Slopes p = -x/z and q = -y/z of a window. They are NaN if a texel has no usable normal: it is not finite, is shorter

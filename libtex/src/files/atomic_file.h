@@ -26,7 +26,7 @@ namespace tex::inline v1 {
 
 struct WriteOptions;
 
-// As in WriteOptions (file.h).
+// The fields mean what they mean in WriteOptions (file.h).
 struct AtomicFileOptions {
     bool sync = true;
     bool no_clobber = false;

@@ -28,7 +28,7 @@ public:
     static Result<std::unique_ptr<OutputFile>> open(const std::string& path, std::size_t bytes, Opened when,
                                                     const AtomicFileOptions& options);
 
-    // As in AtomicFile.
+    // See AtomicFile.
     Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes);
     Result<void> commit();
 

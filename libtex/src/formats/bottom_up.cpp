@@ -21,7 +21,7 @@ public:
     }
 
 private:
-    // Of a row, counted from the bottom.
+    // The offset of a row, counted from the bottom.
     [[nodiscard]] std::uint64_t place_of(int row) const {
         return file_.head.size() + static_cast<std::uint64_t>(row) * stride_;
     }

@@ -28,7 +28,7 @@ struct FileType {
     std::string_view magic =
         {};  // the first bytes of every such file; empty: the reader process recognises and decodes it
     bool (*claims)(std::span<const std::byte> head) = nullptr;  // of a type without a magic that libtex decodes
-    // Of a type that no bytes tell: the options or the file's name do.
+    // Recognises a type that no bytes show, by the options or the file's name.
     bool (*is_named)(const InputFile& file, const ReadOptions& options) = nullptr;
 
     // What the file type can hold.
@@ -64,7 +64,7 @@ struct FileType {
 
 // The type that reads a file beginning with `head`: the one with this magic or that claims it, otherwise the reader's.
 [[nodiscard]] const FileType& file_type_for(std::span<const std::byte> head);
-// The same for an open file, which may be of a type that has no magic: the options or its name then say what it is.
+// The type of an open file, which may have no magic: the options or its name then say what it is.
 [[nodiscard]] const FileType& file_type_for(const InputFile& file, const ReadOptions& options);
 
 }  // namespace tex::inline v1

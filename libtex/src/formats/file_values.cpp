@@ -12,7 +12,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// As TIFF numbers them.
+// The numbers of TIFF.
 constexpr std::uint32_t kSigned = 2, kFloating = 3;
 
 // Whether the file says that its samples are quantities. Normals and colours are not, even if they are signed.

@@ -12,7 +12,7 @@
 
 namespace tex::inline v1 {
 
-// The same rows with the values that are wanted. Call this before rows are stored. Throws std::bad_alloc.
+// Returns the rows with the values that are wanted. Call this before rows are stored. Throws std::bad_alloc.
 std::unique_ptr<RowSource> with_values(std::unique_ptr<RowSource> rows, FileValues values);
 
 }  // namespace tex::inline v1

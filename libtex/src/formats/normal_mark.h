@@ -35,7 +35,7 @@ inline constexpr std::size_t kLongestNormalMark = 9;  // "dxt5nm +y"
 // nothing, if this is not a mark or if it does not fit the format, which must be set.
 bool apply_normal_mark(std::string_view mark, Texture& texture);
 
-// As apply_normal_mark(), but an empty mark is none at all, and a mark that is not applied becomes a remark.
+// Calls apply_normal_mark(), but an empty mark is none at all, and a mark that is not applied becomes a remark.
 bool apply_found_mark(std::string_view mark, Texture& texture);
 
 // The strength that a mark of heights states.

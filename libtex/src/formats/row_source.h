@@ -52,10 +52,10 @@ public:
     [[nodiscard]] bool is_no_data_assumed() const { return is_no_data_assumed_; }
     // What the file says about its samples: a GeoTIFF, for example, states units.
     [[nodiscard]] const StoredSamples& stored() const { return stored_; }
-    // As Image::stored, Image::scale and Image::offset.
+    // See Image::stored, Image::scale and Image::offset.
     [[nodiscard]] bool has_numbers() const { return has_numbers_; }
     [[nodiscard]] const std::string& remark() const { return remark_; }  // as in Image
-    // Of heights: the strength that the file states (Texture::bumpiness_x).
+    // The strength that a file of heights states (Texture::bumpiness_x).
     [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
     [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
     [[nodiscard]] bool is_turned() const { return is_turned_; }     // Texture::turned
@@ -96,7 +96,7 @@ public:
 
     // Whether peek() may read rows before decode() has reached them.
     [[nodiscard]] virtual bool can_peek() const { return is_random(); }
-    // As decode(), but for any rows; decode() returns them again. Precondition: can_peek(); no other thread decodes.
+    // Decodes any rows; decode() returns them again. Precondition: can_peek(); no other thread decodes.
     virtual Result<void> peek(int first, int count, std::byte* rows) { return decode(first, count, rows); }
 
     // Checks, after the last row, that the file ends as it should. Errors: as decode().
@@ -185,7 +185,7 @@ Result<std::unique_ptr<RowSource>> open_rows(InputFile& file, const ReadOptions&
 // Reads the whole picture if it could be opened. Errors: that of opening; as RowSource::read_all().
 Result<Image> read_all(Result<std::unique_ptr<RowSource>> rows);
 
-// As read_image(path), for an open file. Errors name the file.
+// Does what read_image(path) does, for an open file. Errors name the file.
 Result<Image> read_image(InputFile& file, const ReadOptions& options);
 
 }  // namespace tex::inline v1

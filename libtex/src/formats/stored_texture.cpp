@@ -13,7 +13,7 @@ namespace tex::inline v1 {
 
 namespace {
 
-// The same without the bytes between the rows.
+// Bytes of a row without those between the rows.
 std::size_t stored_row_bytes(const StoredTexture& texture, int width) {
     if (texture.fields) return static_cast<std::size_t>(width) * static_cast<std::size_t>(texture.fields->texel_bytes);
     return level_bytes(texture.head.format, {width, 1});

@@ -30,7 +30,7 @@ struct StoredTexture {
         Extent extent;
         std::uint64_t offset = 0;
         std::uint64_t bytes = 0;  // in the file
-        // Of a level that is compressed: its bytes with all layers, and those before the layer that is read.
+        // A compressed level's bytes with all layers, and those before the layer that is read.
         std::uint64_t inflated = 0;
         std::uint64_t skipped = 0;
     };

@@ -17,7 +17,7 @@
 
 namespace tex::inline v1 {
 
-// As read_texture(path), for an open file. Errors name the file.
+// Does what read_texture(path) does, for an open file. Errors name the file.
 Result<Texture> read_texture(InputFile& file, const ReadOptions& options);
 
 // A texture whose levels are read as rows.

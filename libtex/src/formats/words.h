@@ -21,7 +21,7 @@ bool has_extension(std::string_view path, std::string_view extension);
 // A decimal number, with an exponent or not; "nan" and "inf" are numbers. Nothing if the text is not one, or if it is
 // beyond the range of a double.
 std::optional<double> number_in(std::string_view text);
-// The same for a whole number; "12.0" is one, because some programs write counts so.
+// A whole number; "12.0" is one, because some programs write counts so.
 std::optional<long long> whole_number_in(std::string_view text);
 
 // The nearest float; infinite where there is none.

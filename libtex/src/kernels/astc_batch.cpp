@@ -161,7 +161,7 @@ void AstcBatch::fit(const AstcSteps& steps, std::size_t begin) {
     }
 }
 
-// Of each block, those with the least errors.
+// Keeps each block's candidates with the least errors.
 void AstcBatch::keep_best_candidates() {
     for (std::size_t k = 0; k < candidates_.size(); ++k) candidates_[k].place = static_cast<int>(k);
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {

@@ -31,7 +31,7 @@ private:
 
 class AstcBatch {
 public:
-    // Of at most so many blocks. Takes memory.
+    // Holds at most so many blocks. Takes memory.
     AstcBatch(const AstcGuide& guide, const AstcEffort& effort, int most);
 
     // The first texel of a channel of a block; the others follow at distances of lanes().
@@ -63,7 +63,7 @@ private:
     };
 
     void gather(const Candidate* candidates, int used);
-    // Of a candidate with several partitions.
+    // Precondition: the candidate has several partitions.
     [[nodiscard]] const AstcPattern& pattern_of(const Candidate& candidate) const {
         return guide_.patterns[plans_.plans[static_cast<std::size_t>(candidate.plan)].partitions - 2]
                               [static_cast<std::size_t>(candidate.pattern)];

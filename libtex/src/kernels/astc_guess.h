@@ -31,7 +31,7 @@ struct AstcGuesses {
 // Parts `count` pairs of x and y, limits them to [-1, 1], adds 1 and multiplies by `scale`.
 void astc_planes(const float* xy, std::size_t count, float scale, float* x, float* y);
 
-// Of plans with one partition: the `count` best, from the best.
+// Guesses the `count` best plans with one partition, from the best.
 void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses);
 
 }  // namespace tex::inline v1

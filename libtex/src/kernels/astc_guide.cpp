@@ -38,7 +38,7 @@ AstcGuide::Choice choice_of(const AstcPlans& plans, int number) {
             plan.grid->is_full && plan.mode.planes == 2 && step < 1.5f ? steps + 1 : 0};
 }
 
-// Of choices of one grid, the guesses differ by noise alone. Leaves out those that are the best for no range.
+// Guesses of choices of one grid differ by noise alone. Leaves out those that are the best for no range.
 void keep_best(std::vector<AstcGuide::Choice>& choices) {
     constexpr float kMostRange = 255.0f * 255.0f, kNarrowRange = kAstcNarrow * kAstcNarrow, kStep = 1.05f;
     std::vector<bool> is_best(choices.size());

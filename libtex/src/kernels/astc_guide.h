@@ -43,7 +43,7 @@ struct AstcGuide {
     // Orthonormal bases of what so many weights can express along an axis: by texels (of width, of height), weights.
     // The first (weights + 1) / 2 vectors are the same from both ends, the others change their sign.
     float basis[2][9][8][8];
-    // Of the height, by weights: products of two numbers of a vector, summed over the vectors. For numbers up to the
+    // For the height, by weights: products of two numbers of a vector, summed over the vectors. For numbers up to the
     // middle, these are the first vectors, for those after it the others.
     float pairs[9][kAstcPairs];
 };

@@ -60,7 +60,7 @@ protected:
         return hn::GatherIndex(d_, table, hn::ConvertTo(di, hn::Add(place, number(0.5f))));
     }
 
-    // Of values for endpoints with offsets and for others, those of a partition's blocks.
+    // Selects the value for endpoints with offsets or for others, as the blocks of a partition use them.
     HWY_INLINE AstcFloat by_use(int p, AstcFloat offsets, AstcFloat others) const {
         return hn::IfThenElse(hn::Gt(offset_[p], number(0.5f)), offsets, others);
     }
@@ -114,7 +114,7 @@ private:
     static constexpr int kMostStarts = 2;
     HWY_INLINE AstcFloat texel(int c, int k) const { return hn::Load(d_, value_[c] + at(k)); }
 
-    // Of the partitions' values, that of a texel.
+    // Selects the value of a texel's partition.
     template <class Value>
     HWY_INLINE AstcFloat of_texel(int k, Value value) const {
         AstcFloat result = value(0);
@@ -125,7 +125,7 @@ private:
         return result;
     }
 
-    // Of a texel of partition p, a value; of others, another one.
+    // Selects one value for texels of partition p, and another for the rest.
     HWY_INLINE AstcFloat of_partition(int p, int k, AstcFloat value, AstcFloat other) const {
         const AstcFloat partition = hn::Load(d_, partition_ + at(k));
         return hn::IfThenElse(hn::Eq(partition, number(static_cast<float>(p))), value, other);

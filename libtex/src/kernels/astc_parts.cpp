@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
 
-// Of a partition: the energy along the direction in which it differs most, and across.
+// A partition's energy along the direction in which it differs most, and across.
 struct AstcAxes {
     FloatVec along, across;
 };

@@ -11,7 +11,7 @@
 
 namespace tex::inline v1 {
 
-// Of plans with two or three partitions: for each of the `patterns` best patterns, the `plans` best plans; their
+// Guesses plans with two or three partitions: for each of the `patterns` best patterns, the `plans` best plans; their
 // product is at most kAstcMostGuesses. Sets `count`.
 void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns, int plans,
                          AstcGuesses& guesses);

@@ -226,7 +226,7 @@ HWY_NOINLINE void ProjectColumns(const AstcGuide& guide, Extent grid, const floa
     for (int n = 0; n < kSums; ++n) e[n] = sum[n];
 }
 
-// Of a texel's value, where it is not inside, another one.
+// Selects a texel's value inside part p, and another one elsewhere.
 HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec other) {
     return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
 }
@@ -249,7 +249,7 @@ static HWY_NOINLINE FloatVec CoarseLeave(const float* field, FloatVec field_midd
     return hn::Mul(sum, hn::Mul(step, step));
 }
 
-// That as a share of what they would leave of texels that are evenly spread.
+// What coarse weights leave, as a share of what they would leave of evenly spread texels.
 HWY_INLINE FloatVec CoarseShare(FloatVec leave, FloatVec squared_range, int coarse, int texels) {
     const auto steps = static_cast<float>(coarse + 1);
     const FloatVec even = hn::Mul(squared_range, AstcNumber(static_cast<float>(texels) / (12.0f * steps * steps)));

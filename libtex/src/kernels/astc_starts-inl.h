@@ -124,7 +124,7 @@ void AstcLine<kChannels, kPartitions>::make_starts(Ends* starts) {
     }
 }
 
-// Of pairs of shares of the range by which endpoints stand inside, those two with the least error after weights, as if
+// Finds two pairs of shares of the range by which endpoints stand inside, those of least error after weights, as if
 // their levels were evenly spaced, and then endpoints were fitted: what is explained is the squared covariance of
 // levels and values over the variance of the levels.
 template <int kChannels, int kPartitions>

@@ -196,7 +196,7 @@ inline HWY_NOINLINE AstcFloat AstcRounding::first_end(int p, AstcFloat end, int 
     return by_use(p, base, direct);
 }
 
-// The same for the other endpoint. An offset depends on the base.
+// Rounds the other endpoint. An offset depends on the base.
 inline HWY_NOINLINE AstcFloat AstcRounding::second_end(int p, AstcFloat first, AstcFloat end, int way) const {
     const AstcFloat code = hn::Min(hn::Max(end, hn::Zero(d_)), number(255.0f));
     AstcFloat direct = code, sum = code;
@@ -217,7 +217,7 @@ inline HWY_NOINLINE AstcFloat AstcRounding::second_end(int p, AstcFloat first, A
     return by_use(p, sum, direct);
 }
 
-// Of the pair that is nearest and the eight pairs around it, that with the least squared error.
+// Takes the pair with the least squared error: the nearest one, or one of the eight around it.
 inline HWY_NOINLINE void AstcRounding::nearest_pair(int p, const Sums& s, AstcFloat end[2]) const {
     // The error but for a constant: a e0^2 + 2 b e0 e1 + c e1^2 - 2 (x e0 + y e1).
     const AstcFloat b = hn::Sub(s.w, s.ww), c = s.ww;

@@ -42,7 +42,7 @@ void normals_by_difference(const float* left, const float* right, const float* d
 // out[i] = sum over k = 1 to radius of derivative[k - 1] (row[i + k] - row[i - k]).
 void derive_row(const float* row, const float* derivative, int radius, int count, float* out);
 
-// The same upwards, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one:
+// Derives upwards, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one:
 // out[i] = sum of derivative[k - 1] (rows[radius - k][i] - rows[radius + k][i]).
 void derive_column(const float* const* rows, const float* derivative, int radius, int count, float* out);
 

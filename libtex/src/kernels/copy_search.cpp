@@ -17,7 +17,7 @@ namespace {
 // less than kCosineSlack.
 constexpr float kCosine = static_cast<float>(kDirectionUnit) * static_cast<float>(kDirectionUnit) / 32768.0f;
 constexpr float kCosineSlack = 16.0f;
-// The same of its square.
+// The square of the cosine, likewise.
 constexpr float kSquare = kCosine * kCosine / 32768.0f;
 constexpr float kSquareSlack = 48.0f;
 

@@ -48,11 +48,11 @@ using CornerVectors = double[3][3];
 void mix_corners(const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
                  VectorArrays<double> sums);
 
-// The same, normalised. Returns whether all of them have a length that is not nearly 0.
+// Mixes and normalises. Returns whether all sums have a length that is not nearly 0.
 bool mix_directions(const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
                     VectorArrays<double> directions);
 
-// The same for places that each have a triangle of their own: normals[3 * corner + axis][k] belongs to place k. Normals
+// Mixes normals at places that each have their own triangle: normals[3 * corner + axis][k] belongs to place k. Normals
 // are normalised before and after they are mixed. A sum without length becomes (0, 0, 0). Returns whether all sums have
 // a length.
 bool mix_normals(const float* const normals[9], VectorArrays<const double> weights, std::size_t count,

@@ -242,7 +242,7 @@ private:
             add(table, multiplier, lower, bases.last, gains_.errors(table, multiplier, lower));
     }
 
-    // The same without tables, for palettes with entries that are clamped.
+    // Scores without tables, for palettes with entries that are clamped.
     void score_clamped(int table, int multiplier, Bases bases) {
         const Floats d;
         const int lanes = static_cast<int>(hn::Lanes(d));

@@ -45,7 +45,7 @@ void encode_dxt5nm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 
-// The same for EAC RG11: see eac_search.h.
+// Encodes EAC RG11: see eac_search.h.
 void encode_eac_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_eac_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 

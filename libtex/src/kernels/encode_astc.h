@@ -24,7 +24,7 @@ namespace tex::inline v1 {
 // first call for a format and an effort, or prepare_astc(), makes tables, which stay on the heap.
 void encode_astc(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks);
 
-// The same for one channel, values from 0 to 1, as luminance: red, green and blue are equal, and alpha is 1.
+// Encodes one channel, values from 0 to 1, as luminance: red, green and blue are equal, and alpha is 1.
 void encode_astc_luminance(Format format, Effort effort, const float* luminance, Extent extent, std::byte* blocks);
 
 void prepare_astc(Format format, Effort effort);

@@ -41,7 +41,7 @@ HWY_INLINE constexpr int float_lanes() { return static_cast<int>(hn::MaxLanes(Fl
 HWY_INLINE F constant(float value) { return hn::Set(Floats(), value); }
 HWY_INLINE W word(int value) { return hn::Set(Words(), static_cast<std::uint16_t>(value)); }
 
-// As floats, a vector of words takes kParts vectors: first the words of even lanes, then those of odd lanes. So no word
+// A vector of words takes kParts vectors of floats: first the words of even lanes, then those of odd lanes. So no word
 // changes its lane.
 #if HWY_TARGET == HWY_SCALAR
 constexpr int kParts = 1;

@@ -269,7 +269,7 @@ protected:
         ends.high[p] = hn::IfThenElse(solvable, code(end, p), ends.high[p]);
     }
 
-    // The same, with each endpoint rounded once, by its division. The endpoints are those of stored(). If all texels
+    // Refines with each endpoint rounded once, by its division. The endpoints are those of stored(). If all texels
     // are whole codes, numerators and denominators are exact: they are multiples of half a code, and below 2^23 of
     // them.
     HWY_INLINE void refine_exactly(const Moments& m, int p, Ends& ends) const {

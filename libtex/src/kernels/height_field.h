@@ -36,7 +36,7 @@ std::int64_t clean_row(float* row, int count, float no_data, bool invert);
 // first.
 void smooth_row(const float* row, const float* smoothing, int radius, int count, float* out);
 
-// The same down the columns, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one.
+// Smooths down the columns, through the 2 radius + 1 rows `rows`, of which rows[0] is the top one.
 void smooth_column(const float* const* rows, const float* smoothing, int radius, int count, float* out);
 
 }  // namespace tex::inline v1

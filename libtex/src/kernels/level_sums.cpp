@@ -69,7 +69,7 @@ struct ChunkSums {
         const V ex = hn::Sub(stored.x, average.x), ey = hn::Sub(stored.y, average.y);
         average_square.Add(k, product(ex, ex, ey, ey));
     }
-    // Of one component: gx and gy are its differences.
+    // Adds one component, whose differences are gx and gy.
     HWY_INLINE void AddGradients(std::size_t k, V gx, V gy, V of_r, V of_s) {
         xx.Add(k, hn::Mul(gx, gx)), xy.Add(k, hn::Mul(gx, gy)), yy.Add(k, hn::Mul(gy, gy));
         xr.Add(k, hn::Mul(gx, of_r)), yr.Add(k, hn::Mul(gy, of_r));

@@ -16,7 +16,7 @@ struct LevelSums {
     double ss = 0.0, rr = 0.0, rs = 0.0;
     double length = 0.0, average_length = 0.0;             // of s and a
     double normalised_square = 0.0, average_square = 0.0;  // of s - r and s - a
-    // Of the texels with four neighbours, the normal equations of s - g r = d_x r_x + d_y r_y with central differences
+    // Normal equations, over texels with four neighbours, of s - g r = d_x r_x + d_y r_y with central differences
     // r_x (to the right) and r_y (downwards).
     double xx = 0.0, xy = 0.0, yy = 0.0, xr = 0.0, yr = 0.0, xs = 0.0, ys = 0.0;
 

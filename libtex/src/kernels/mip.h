@@ -22,7 +22,7 @@ void split_row(const float* row, int count, float* even, float* odd);
 void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride, int taps,
                     int count, float* out);
 
-// The same with weights[k] for all texels (even sizes).
+// Filters with weights[k] for all texels (even sizes).
 void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count, float* out);
 
 // The box filter for sizes that are both halved exactly. Gives the same bytes as filter_rows() and
@@ -36,7 +36,7 @@ void slopes_of_vectors(const float* x, const float* y, const float* z, int count
 // vectors become (0, 0, 1). Vectors are normalised, moved towards (0, 0, 1) by fade (0 to 1), and normalised again.
 void finish_vectors(float* x, float* y, float* z, int count, float fade, float least_z = 0.0f);
 
-// The same, from averaged slopes p = x / z in x and q = y / z in y. z is only written.
+// Finishes averaged slopes p = x / z in x and q = y / z in y. z is only written.
 void finish_slopes(float* x, float* y, float* z, int count, float fade);
 
 }  // namespace tex::inline v1

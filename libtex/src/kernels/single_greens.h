@@ -19,7 +19,7 @@ struct SingleGreen {
 const SingleGreen& single_green_below(int third);
 const SingleGreen& single_green_above(int third);
 
-// The same for endpoints at most kMaxSingleDistance apart, because the error of hardware grows with that distance. Any
+// For endpoints at most kMaxSingleDistance apart, because the error of hardware grows with that distance. Any
 // value is at most two thirds of a code from one of these. The tables cover 0 to kMostThirds thirds; each entry is
 // third << 16 | lower << 8 | distance.
 inline constexpr int kMaxSingleDistance = 11;

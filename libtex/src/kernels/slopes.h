@@ -13,7 +13,7 @@ namespace tex::inline v1 {
 // `least_z` > 0 or a component is NaN or infinite. Returns the number of such texels.
 int slopes_of_normals(const VectorRow& normals, float least_z, int count, float* p, float* q);
 
-// The same minus the slopes of `made`, which bake() has made: p and q are 0 in those texels, too.
+// Slopes minus those of `made`, which bake() has made: p and q are 0 in those texels, too.
 void excess_slopes(const VectorRow& normals, const VectorRow& made, float least_z, int count, float* p, float* q);
 
 // The number of texels for which both make p and q 0.

@@ -41,7 +41,7 @@ struct VectorLimits {
 struct VectorCounts {
     std::array<int, kVectorTraits> count{};
     std::array<int, kVectorTraits> first{};  // the first such vector, if there is one
-    // Of finite vectors.
+    // Sums over finite vectors.
     int finite = 0;
     double x = 0.0, y = 0.0, z = 0.0, length = 0.0;  // sums
     float min_length = std::numeric_limits<float>::max(), max_length = 0.0f;

@@ -57,7 +57,7 @@ HWY_INLINE Vec3 Normalise(FloatTag d, Vec3 n) {
     return FlatUnless(d, sound, {hn::Div(n.x, length), hn::Div(n.y, length), hn::Div(n.z, length)});
 }
 
-// The same, after negative z has become 0.
+// Normalises after negative z has become 0.
 HWY_INLINE Vec3 NormaliseUpper(FloatTag d, Vec3 n) {
     namespace hn = hwy::HWY_NAMESPACE;
     return Normalise(d, {n.x, n.y, hn::Max(n.z, hn::Zero(d))});

@@ -66,7 +66,7 @@ public:
     RowAllocation(const RowAllocation&) = delete;
     RowAllocation& operator=(const RowAllocation&) = delete;
 
-    // That of this thread; null: the heap.
+    // The allocator of this thread; null: the heap.
     static const Allocate* current() noexcept;
 
 private:

@@ -35,7 +35,7 @@ Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes);
 Result<Mesh> parse_gltf(std::span<const std::byte> bytes, const LoadBeside& load, const DecodeDraco& draco = {},
                         bool colors = false);
 
-// The same of a file that is already parsed.
+// Reads a file that is already parsed.
 Result<Mesh> parse_gltf(JsonValue root, GltfBuffers& buffers, const DecodeDraco& draco, bool colors);
 
 // Errors: bad_data, unsupported (the version; a required extension).

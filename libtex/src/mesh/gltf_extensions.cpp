@@ -11,7 +11,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// Those that libtex reads, and those that change neither triangles nor their attributes nor where textures lie.
+// Extensions that libtex reads, or that change neither triangles nor their attributes nor where textures lie.
 bool is_known(std::string_view name) {
     for (const std::string_view known : {"KHR_draco_mesh_compression",
                                          "EXT_meshopt_compression",

@@ -18,7 +18,7 @@
 
 namespace tex::inline v1 {
 
-// As mikktspace_tangents().
+// Returns what mikktspace_tangents() does, by the other method.
 Result<std::vector<Float4>> meshopt_tangents(const MeshPart& part, int uv_set, const Execution& execution);
 
 }  // namespace tex::inline v1

@@ -39,7 +39,7 @@ inline Vector3 mix(const std::array<Vector3, 3>& v, const std::array<double, 3>&
     return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
 }
 
-// As kernels/corner_vectors.h wants them: rows[corner][axis].
+// The layout that kernels/corner_vectors.h wants: rows[corner][axis].
 inline void copy_to(const std::array<Vector3, 3>& v, double (&rows)[3][3]) {
     for (std::size_t k = 0; k < 3; ++k) {
         rows[k][0] = v[k].x;

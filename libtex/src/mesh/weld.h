@@ -19,7 +19,7 @@ namespace tex::inline v1 {
 // Errors: out_of_memory, cancelled.
 Result<std::vector<std::uint32_t>> weld_corners(const MeshPart& part, int uv_set, const Execution& execution);
 
-// The same classes, each represented by its first corner.
+// The classes of weld_corners(), each represented by its first corner.
 Result<std::vector<std::uint32_t>> weld_to_first(const MeshPart& part, int uv_set, const Execution& execution);
 
 }  // namespace tex::inline v1

@@ -8,7 +8,7 @@
 
 namespace tex::inline v1::render {
 
-// As in Catlike Coding's TangentSpaceVisualizer (Rendering 6, Bumpiness), in brighter shades.
+// The colours of Catlike Coding's TangentSpaceVisualizer (Rendering 6, Bumpiness), in brighter shades.
 inline constexpr Code kTangentColor{255, 92, 80};
 inline constexpr Code kBinormalColor{92, 150, 255};
 inline constexpr Code kNormalColor{88, 220, 100};

@@ -23,7 +23,7 @@ constexpr double kFillShare = 0.12;
 constexpr double kFarthestUv = 1e6;
 constexpr double kLongestUv = 16.0;  // repeats of the map
 
-// Of a triangle, on average, beyond a million, so that memory stays in proportion to the mesh.
+// Copies of a triangle, on average, beyond a million, so that memory stays in proportion to the mesh.
 constexpr std::size_t kMostCopies = 4, kFreeCopies = std::size_t{1} << 20;
 
 // The least and the greatest whole repeat of the map that values touch.

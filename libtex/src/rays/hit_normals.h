@@ -24,7 +24,7 @@ public:
     // For triangles that are seen from behind; where their corners alone are the wrong way round, normals stay.
     void turn(std::size_t k, Vector3 face);
 
-    // Of the k-th hit that was added.
+    // The triangle and the normal of the k-th hit that was added.
     [[nodiscard]] const Triangles::Triangle& triangle(std::size_t k) const { return places_[k]; }
     [[nodiscard]] Vector3 at(std::size_t k) const { return {normals_.x[k], normals_.y[k], normals_.z[k]}; }
 

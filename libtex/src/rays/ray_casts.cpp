@@ -18,7 +18,7 @@ RayEnd end_of(const RayHit& hit, double height) {
     return {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}, height, false};
 }
 
-// Of the hits outwards and inwards, the nearer one; of two at the same distance, the first triangle.
+// The nearer one of the hits outwards and inwards; of two at the same distance, the first triangle.
 RayEnd nearer(const RayHit& out, const RayHit& in) {
     if (out.triangle == kNoHit && in.triangle == kNoHit) return {};
     const bool outwards = in.triangle == kNoHit ||

@@ -21,12 +21,12 @@ public:
     RayStarts(const RayDirections& directions, const TransferInputs& inputs, double front, double diagonal)
         : directions_(directions), inputs_(inputs), front_(front), slack_(0x1p-20 * diagonal) {}
 
-    // Of the place of a triangle with these weights, which lies at (x, y) of the map: from 0 to 1, right and down.
+    // The start at the place of a triangle with these weights, at (x, y) of the map: from 0 to 1, right and down.
     // `work` is that of directions.
     [[nodiscard]] RayStart at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point, double x,
                               double y, RayWork& work) const;
 
-    // Those of many places of a triangle, without pictures. Writes their directions to `directions`.
+    // The starts at many places of a triangle, without pictures. Writes their directions to `directions`.
     void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
                std::size_t count, VectorArrays<double> directions, RayStart* starts, RayWork& work) const;
 

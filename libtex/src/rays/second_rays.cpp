@@ -9,7 +9,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// Of the largest coordinate. The place of a hit and the test of a triangle are exact to a few times 2^-52 of it.
+// A share of the largest coordinate. The place of a hit and the test of a triangle are exact to a few 2^-52 of it.
 constexpr double kLift = 0x1p-32;
 // Makes the directions of thickness others than those of occlusion.
 constexpr std::uint32_t kInwards = 0x68bc21ebU;

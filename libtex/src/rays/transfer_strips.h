@@ -124,7 +124,7 @@ private:
         VectorBlock<kRaysAtOnce> weights, points, directions;  // of the samples
         std::vector<RayStart> starts;
         std::vector<RayEnd> ends;
-        // Those of one group.
+        // What rays of one group need.
         std::vector<std::size_t> chosen;
         std::vector<RayStart> chosen_starts;
         std::vector<RayEnd> chosen_ends;

@@ -40,7 +40,7 @@ bool TransferStrips::wants_more() const {
            !result_.position[0].empty() || !result_.vertex_color.planes.empty();
 }
 
-// Of the samples from `begin` to `end`.
+// Finishes a texel of the samples from `begin` to `end`.
 void TransferStrips::finish_texel(Strip& strip, int i, int j, std::size_t begin, std::size_t end) const {
     if (begin == end) {
         result_.origin.at(i, j) = TexelOrigin::none;

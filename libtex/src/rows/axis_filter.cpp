@@ -121,7 +121,7 @@ AxisFilter make_axis_filter(MipFilter filter, int n) {
     AxisFilter axis;
     axis.even = n % 2 == 0;
     axis.stride = aligned_count(m);
-    // As seen from texel 2 i. Even sizes give all texels the same footprint.
+    // The footprint as seen from texel 2 i. Even sizes give all texels the same one.
     const auto seen = [filter, n, m, even = axis.even](int i) {
         Footprint footprint = footprint_of(filter, even ? 0 : i, n, m);
         footprint.first -= even ? 0 : 2 * i;

@@ -51,7 +51,7 @@ public:
     // they may continue past the last row: row `height` is row 0 again.
     void bake(int j, NormalRow out);
 
-    // The same for a row of a caller, which ends with its last texel: nothing beyond that is written.
+    // Bakes a row of a caller, which ends with its last texel: nothing beyond that is written.
     void bake_exactly(int j, NormalRow out);
 
     // Goes on with row j, which need not follow the last one.

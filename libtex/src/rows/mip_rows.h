@@ -19,7 +19,7 @@ int first_level(const MipOptions& options, Extent base);
 // The number of levels that it keeps.
 int levels_to_build(const MipOptions& options, Extent base);
 
-// The same options for levels that are counted from the base level, if level `first` is the first that is kept.
+// The options for levels that are counted from the base level, if level `first` is the first that is kept.
 MipOptions counted_from_base(MipOptions options, int first);
 
 // How far level `level` has faded to flat, from 0 to 1.
@@ -89,7 +89,7 @@ public:
 
     // Makes row j of the smaller level from the rows of the larger one that LevelFilter::source() names.
     void make(const float* const* rows, int j, float* out);
-    // The same for rows of a caller, which end with their last texels: nothing beyond these is read or written.
+    // Makes rows of a caller, which end with their last texels: nothing beyond these is read or written.
     void make_exactly(const float* const* rows, int j, float* out);
 
 private:

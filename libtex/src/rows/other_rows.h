@@ -11,7 +11,7 @@
 
 namespace tex::inline v1 {
 
-// The same value in channels of 5 and 6 bits, and a rebuilt z and a stored one, differ by less.
+// One value in channels of 5 and 6 bits, and a rebuilt z and a stored one, differ by less.
 inline constexpr float kSameInBlocks = 8.5f / 255.0f;
 
 // The places of data beside normals, in the order of their planes in strips (stream/stage.h).

@@ -155,7 +155,7 @@ void RdoAstcSources::find(const RdoAstcSearcher& block) {
     const float* const prices = prices_.data() + (prices_.size() - kVectorSlack - static_cast<std::size_t>(count));
     astc_copy_costs(table(static_cast<std::size_t>(first)), copy_texels(basis_, *block.texels, texels_), prices,
                     block.scale, lambda_ * kUsualLiteral, count, whole_costs_.data(), front_costs_.data());
-    // Of equal costs, the later block comes first.
+    // Among equal costs, the later block comes first.
     CheapCopies wholes(kOverPlain * block.cost, kMostWholes), fronts(kOverPlain * block.cost, kMostFronts);
     for (int k = count - 1; k >= 0; --k) {
         const auto at = static_cast<std::size_t>(k);

@@ -43,7 +43,7 @@ template <class... Results>
 [[nodiscard]] Result<void> check_usable(const Image& image);
 // At least one level; the extents are those of level_extent().
 [[nodiscard]] Result<void> check_usable(const MipChain& chain);
-// The same, and each level has level_bytes() bytes.
+// At least one level, of the right extent, and each level has level_bytes() bytes.
 [[nodiscard]] Result<void> check_usable(const Texture& texture);
 
 }  // namespace tex::inline v1

@@ -25,11 +25,11 @@ public:
     [[nodiscard]] bool is_surely_something_else() const;
     // The share of texels whose x and y lie outside the unit circle, which are not judged.
     [[nodiscard]] double beyond() const;
-    // Of z and rebuilt z, where vectors are longer than 0.5.
+    // Between z and rebuilt z, where vectors are longer than 0.5.
     [[nodiscard]] double correlation() const { return long_.correlation(); }
 
 private:
-    // Of values in 1/1024.
+    // Sums of values in 1/1024.
     struct Sums {
         std::int64_t count = 0;
         std::int64_t z = 0, rebuilt = 0, z_square = 0, rebuilt_square = 0, product = 0;

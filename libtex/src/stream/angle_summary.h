@@ -10,7 +10,7 @@
 
 namespace tex::inline v1 {
 
-// Of one row.
+// Sums over one row.
 struct AngleSums {
     double sum = 0.0;
     double squares = 0.0;
@@ -20,7 +20,7 @@ struct AngleSums {
 
 AngleSums sum_angles(const float* degrees, int count);
 
-// Of all rows of `degrees`, whose sums are `rows`. Angles are finite and not negative. `left_out` of them are zeros
+// Summarises all rows of `degrees`, whose sums are `rows`. Angles are finite and at least 0. `left_out` are zeros
 // that do not count, and less than all. Errors: out_of_memory.
 [[nodiscard]] Result<AngularError> summarise_angles(const Plane<float>& degrees, const std::vector<AngleSums>& rows,
                                                     std::int64_t left_out, const Execution& execution);

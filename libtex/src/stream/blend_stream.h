@@ -17,7 +17,7 @@ Result<BlendFileReport> blend_stream(const std::string& input, const std::string
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes = {});
 
-// The same for a base from any source.
+// Blends onto a base from any source.
 Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output, Container container,
                                      const BlendFileOptions& options, const Execution& execution,
                                      const StreamSizes& sizes = {});

@@ -28,7 +28,7 @@ public:
     Result<void> open(const Execution& execution);
     // The data beside the normals of the base that can go along, as its options say.
     [[nodiscard]] OtherPlanes others_taken() const;
-    // As SettledMap::alpha_is_one(), of the base.
+    // SettledMap::alpha_is_one() of the base.
     Result<bool> alpha_is_one() { return base_.step ? base_.settled.alpha_is_one() : Result<bool>(false); }
     // Adds stages that make the rows of the result, and these data of the base. To be called once.
     Stage& add_to(Flow& flow, OtherPlanes kept = {});

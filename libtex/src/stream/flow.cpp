@@ -55,7 +55,7 @@ private:
     int waiting_ = 0;  // threads that wait
     int left_;         // tasks
     int reads_ = 0;    // strips that were read, or are being read
-    // Of what is due: everything before next_due_ can be done, everything before oldest_due_ is done.
+    // What is due: everything before next_due_ can be done, everything before oldest_due_ is done.
     std::size_t next_due_ = 0, oldest_due_ = 0;
     std::int64_t due_texels_ = 0;   // between the two
     std::int64_t made_texels_ = 0;  // of all targets
@@ -97,7 +97,7 @@ void FlowRun::make_ready(int task) {
     std::push_heap(line.ready.begin(), line.ready.end(), std::greater<>());
 }
 
-// Of the stages that read, the one that is farthest behind. Null if none can.
+// The stage that reads and is farthest behind. Null if none can.
 FlowRun::Line* FlowRun::next_reading(bool in_order_only) {
     Line* behind = nullptr;
     double least = std::numeric_limits<double>::infinity();

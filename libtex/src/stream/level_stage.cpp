@@ -114,7 +114,7 @@ class TargetStage final : public Stage {
 public:
     using Finish = std::function<void(int j, Strip& strip, int k)>;
 
-    // Of normals, or of their roughness.
+    // Targets of normals, or of their roughness.
     TargetStage(const Stage& from, OtherPlanes others, int level_in_file, Finish finish, Targets& targets,
                 WatchRows seen)
         : Stage(from.extent(), others, from.level()), from_(from), content_(Content::normals),

@@ -30,7 +30,7 @@ struct MadeLevels {
 void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targets& targets,
                 const WatchRows& seen = {});
 
-// The same for roughness that the normals of a level call for.
+// Adds the roughness that the normals of a level call for.
 void add_roughness(Flow& flow, const Stage& normals, const MadeLevels& levels, RoughnessModel model,
                    const MaterialRoughness& own, Targets& targets);
 

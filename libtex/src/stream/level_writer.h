@@ -59,7 +59,7 @@ public:
                                                      const LevelPacking& packing, int first,
                                                      const WriteOptions& options, Opened when);
 
-    // As Targets::is_in_order(), rows_together() and write().
+    // See Targets::is_in_order(), rows_together() and write().
     [[nodiscard]] virtual bool is_in_order() const = 0;
     [[nodiscard]] virtual int rows_together() const { return kBlockEdge; }
     virtual Result<void> write(const LevelRows& rows) = 0;

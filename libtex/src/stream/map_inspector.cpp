@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kWindow = 128;
 constexpr int kLeastSide = 32;  // smaller maps show nothing
-// Of larger maps, a quarter of the texels shows what share is background or faces away, without a cost that is noticed.
+// In larger maps, a quarter of the texels shows what share is background or faces away, at a cost that nobody notices.
 constexpr std::int64_t kMostCounted = std::int64_t{1} << 16;
 constexpr int kCountedStep = 4;
 constexpr float kBehindSurface = -0.1f;

@@ -18,7 +18,7 @@ Result<PackFileReport> pack_stream(InputFile& file, const std::string& output, C
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});
 
-// The same, for a map from any source.
+// Packs a map from any source.
 Result<PackFileReport> pack_stream(MapSource& map, const std::string& output, Container container,
                                    const PackFileOptions& options, const Execution& execution,
                                    const StreamSizes& sizes = {});

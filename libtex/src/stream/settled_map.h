@@ -41,7 +41,7 @@ public:
     // Whether alpha is 1 in every texel of the base level, which then holds no data. If rows cannot be looked at, it is
     // not. Rows can be read once more afterwards.
     Result<bool> alpha_is_one();
-    // Those that go along, as the options say.
+    // The channels that go along, as the options say.
     [[nodiscard]] OtherPlanes others_taken() const;
 
     // Adds stages that make the normals of a level. What the extras name must outlive the flow, as the map must.

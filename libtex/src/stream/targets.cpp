@@ -14,7 +14,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// The same plane, which keeps no memory. It is only read.
+// A view of the plane, which keeps no memory. It is only read.
 Plane<float> seen(const Plane<float>& plane) {
     if (plane.empty()) return {};
     return {plane.extent(), plane.stride(),

@@ -20,7 +20,7 @@ public:
     // Opens the file at `path`. `options` must outlive the reader. May throw std::bad_alloc. Errors: those of
     // bake_file() that concern a picture and its options; they name the file.
     static Result<std::unique_ptr<TileReader>> open(const std::string& path, const BakeFileOptions& options);
-    // The same for a file that is open, which must outlive the reader.
+    // Reads a file that is open, which must outlive the reader.
     static Result<std::unique_ptr<TileReader>> open(InputFile& file, const BakeFileOptions& options);
 
     [[nodiscard]] Extent extent() const { return heights_.rows->extent(); }

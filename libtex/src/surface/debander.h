@@ -10,7 +10,7 @@
 
 namespace tex::inline v1 {
 
-// As deband(), on heights with those wraps. Errors: out_of_memory, cancelled. May throw std::bad_alloc.
+// Does what deband() does, on heights with these wraps. Errors: out_of_memory, cancelled. May throw std::bad_alloc.
 Result<DebandReport> deband_heights(Plane<float>& heights, Wrap wrap_x, Wrap wrap_y, Deband when,
                                     const Execution& execution, ProgressSpan span);
 

@@ -28,7 +28,7 @@ auto no_throw(Body&& body) -> decltype(body()) {
     }
 }
 
-// The same for a verb whose planes come from execution.allocate.
+// Runs a verb whose planes come from execution.allocate.
 template <class Body>
 auto no_throw(const Execution& execution, Body&& body) -> decltype(body()) {
     const RowAllocation own(execution.allocate);

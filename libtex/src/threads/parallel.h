@@ -19,7 +19,7 @@ struct ProgressSpan {
 
 // Rows that a loop over a whole map gives to a thread at a time.
 inline constexpr int kRowsPerPiece = 16;
-// The same in texels, for loops over levels, whose rows may be short.
+// Texels at a time, for loops over levels, whose rows may be short.
 inline constexpr int kPieceTexels = 1 << 15;
 
 // The rows of `extent` that hold about kPieceTexels texels: at least 1.

@@ -34,7 +34,7 @@ struct BmpHeader {
     std::vector<BmpField> fields;                      // of R, G, B and perhaps A
     int bits = 8;                                      // of the samples
 
-    // Of a row that is not compressed; rows begin at multiples of four bytes.
+    // Bytes of a row that is not compressed; rows begin at multiples of four bytes.
     [[nodiscard]] std::size_t row_bytes() const { return (static_cast<std::size_t>(extent.width) * depth_() + 7) / 8; }
     [[nodiscard]] std::size_t stride() const { return (row_bytes() + 3) & ~std::size_t{3}; }
 

@@ -40,7 +40,7 @@ public:
     // Reads the table of chunks of part `part`. Throws std::bad_alloc. Errors: bad_data, io. Preconditions: the header
     // has been checked, because it determines how much memory is allocated; is_decoded_here(its compression).
     static Result<std::shared_ptr<ExrReader>> open(const InputFile& file, const ExrHeaders& headers, int part);
-    // The same for a file of one part, which the reader keeps.
+    // Opens a file of one part, which the reader keeps.
     static Result<std::shared_ptr<ExrReader>> open(InputFile file, const ExrHeaders& headers);
 
     [[nodiscard]] const Imf::Header& header() const { return header_; }

@@ -22,7 +22,7 @@ namespace tex::inline v1 {
 // Errors: bad_data (with OpenEXR's reason), unsupported (deep data, subsampled channels, too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOptions& options);
 
-// The same for a texture, with its mip levels. The channels are R, G, B (and A); in a file without them, all channels
+// Opens a texture, with its mip levels. The channels are R, G, B (and A); in a file without them, all channels
 // if there are at most four. The attributes normalEncoding and normalYAxis set Texture::normal_encoding and
 // Texture::y_axis. Levels that follow another rule than level_extent() (ripmaps, extents rounded up) are left out, with
 // a remark. Errors: as open_exr_rows(); unsupported if there are more than four channels and R, G or B is missing.

@@ -35,7 +35,7 @@ const char* png_version();
 // Errors: bad_data (with libpng's reason), unsupported (too large), io, out_of_memory.
 Result<std::unique_ptr<RowSource>> open_png(InputFile& file, const ReadOptions& options);
 
-// As open_png(), through libpng alone: the same files are read, with the same texels. Tests compare the two.
+// Opens through libpng alone: the files of open_png() are read, with the same texels. Tests compare the two.
 Result<std::unique_ptr<RowSource>> open_png_with_libpng(InputFile& file, const ReadOptions& options);
 
 // Writes the base level of a texture row by row, with the bytes of encode_png(). The work of the target is to filter

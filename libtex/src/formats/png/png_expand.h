@@ -21,10 +21,10 @@ struct PngKind {
     bool has_transparency = false;          // there is alpha that the texels of the file do not have
     std::array<std::uint16_t, 3> hidden{};  // without a palette: the texel whose alpha is 0; grey, or red, green, blue
 
-    // Of an expanded texel.
+    // An expanded texel has:
     [[nodiscard]] int expanded_channels() const { return (is_palette ? 3 : channels) + (has_transparency ? 1 : 0); }
     [[nodiscard]] int expanded_bits() const { return bit_depth == 16 ? 16 : 8; }
-    // Of a row of the file.
+    // Bytes of a row of the file.
     [[nodiscard]] std::size_t row_bytes(std::size_t width) const {
         return (width * static_cast<std::size_t>(channels * bit_depth) + 7) / 8;
     }

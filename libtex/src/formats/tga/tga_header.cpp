@@ -16,7 +16,7 @@ namespace {
 // Bits of the descriptor, the last byte of the header.
 constexpr int kAlphaBits = 0x0f, kFromRight = 0x10, kFromTop = 0x20, kInterleaved = 0xc0;
 
-// Of the extension area.
+// What the extension area says of alpha.
 enum class AlphaType { none = 0, ignored = 1 };
 
 // The fields that the rows need, as the file has them.
