@@ -5,7 +5,7 @@
     tests/build_drills.py [ROUNDS [BUILD [SEED]]]    default: 500 build/release 1
 
 Each round makes a random tree: links, odd names, files of equal bytes, outputs that lead to inputs, documents with the
-names of other files, a cache in a folder that is not one. It runs build-normals a few times: alone, two at once, killed,
+names of other files, a cache in a folder that is not one, a state that somebody else has written. It runs build-normals a few times: alone, two at once, killed,
 with inputs that are replaced meanwhile, with a damaged cache and a damaged state. After each run:
 
 * every file that the user had is byte for byte what it was, and so are the files outside the tree that links lead to;
@@ -15,6 +15,7 @@ with inputs that are replaced meanwhile, with a damaged cache and a damaged stat
 Prints the seed of a round that fails. tests/build_drills.sh runs some rounds.
 """
 
+import hashlib
 import os
 import pathlib
 import random
@@ -180,6 +181,25 @@ class Round:
                 data[self.random.randrange(30, len(data))] ^= 4
                 state.write_bytes(data)
 
+    def forge(self):
+        """Adds outputs to the state that nobody has made, as whoever ships a folder can."""
+        state = pathlib.Path(self.tree, ".normals.toml.state")
+        head = b"build-normals state 1\n"
+        lines = state.read_bytes()[len(head):-69] if state.is_file() and not state.is_symlink() else b""
+        victims = ["notes.txt", "normals.toml", "../outside/notes.txt", "../outside/victim0.png", "out/../notes.txt",
+                   "lnk/a.png", "away/victim1.png", "out/../../outside/victim2.png", os.path.join(self.outside, "notes.txt"),
+                   *self.contents]
+        for victim in victims:
+            path = os.path.join(self.tree, victim)
+            if not os.path.isfile(path) or any(c in victim for c in "%\t\n"):
+                continue
+            sums = hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+            made_from = self.random.choice(["art/gone.png", victim, "../art/gone.png", "art/../notes.txt"])
+            lines += f"made\t{'0' * 64}\t{'0' * 64}\t{made_from}\t{victim}\t1\t{sums}\t{victim}\n".encode()
+        text = head + lines
+        if not state.is_symlink() and not state.is_dir():
+            state.write_bytes(text + b"end\t" + hashlib.sha256(text).hexdigest().encode() + b"\n")
+
     def editor(self, stop):
         """Replaces inputs, as a program that saves does."""
         names = [name for name in self.contents if not os.path.islink(os.path.join(self.tree, name))]
@@ -233,13 +253,17 @@ class Round:
         self.killed = False
         codes = []
         for _ in range(self.random.randint(2, 5)):
-            what = self.random.choice(["alone", "two", "killed", "edited", "damaged", "alone"])
+            what = self.random.choice(["alone", "two", "killed", "edited", "damaged", "forged", "alone"])
             arguments = self.arguments()
             before = {name: now for name, now in files_below(self.tree).items() if name not in self.ours}
             stop = threading.Event()
             editor = threading.Thread(target=self.editor, args=(stop,))
             if what == "damaged":
                 self.damage()
+            if what == "forged":
+                self.forge()
+                if "--plan" not in arguments and "--prune" not in arguments:
+                    arguments.append("--prune")
             if what == "edited":
                 editor.start()
             programs = [run(self.tree, arguments) for _ in range(2 if what == "two" else 1)]

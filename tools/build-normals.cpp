@@ -63,8 +63,7 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
         .option("--memory", "BYTES", "start a file only while all together need no more (K, M, G)",
                 [this](const std::string& text) { build_.memory = cli::parse_count(text); })
         .preset = "half of the machine's";
-    command.text(build_.depfile, "--depfile", "FILE", "write what each output was made from, for Make and Ninja")
-        .completes = cli::Completes::files;
+    command.output_file(build_.depfile, "--depfile", "write what each output was made from, for Make and Ninja");
     command.flag(build_.no_sync, "--no-sync", "do not wait until outputs are on the disk");
     farm_.add(command);
     running_.add(command);
@@ -117,10 +116,12 @@ Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console
                                           build_.output_version, cli::kOutputVersion));
     }
     farm_.check_fits(path, tree->text, build_, console);
-    if (farm_.merges()) return tree;
     tree->recipes.reserve(manifest.rules.size());
-    for (const cli::RuleSettings& rule : manifest.rules)
-        tree->recipes.emplace_back(manifest, rule, static_cast<int>(tree->recipes.size()) + 1, build_.root, console);
+    cli::ProgramPool pool;
+    for (const cli::RuleSettings& rule : manifest.rules) {
+        tree->recipes.emplace_back(manifest, rule, static_cast<int>(tree->recipes.size()) + 1, build_.root, pool,
+                                   console);
+    }
     return tree;
 }
 
@@ -152,7 +153,7 @@ cli::ExitCode BuildNormals::work(cli::Console& console) {
     const auto loaded = read(console);
     if (!loaded) return failed(loaded.error(), console);
     cli::BuildTree& tree = **loaded;
-    if (farm_.merges()) return farm_.merge(command.inputs(), build_, running_, console);
+    if (farm_.merges()) return farm_.merge(tree.recipes, command.inputs(), build_, running_, console);
     if (farm_.plan()) return farm_.run_shard(tree.recipes, build_, running_, console);
     find(tree, {}, console);
     if (!explain_.empty()) return console.print(cli::explanation_of(explain_, tree.recipes, tree.work));

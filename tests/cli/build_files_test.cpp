@@ -104,7 +104,7 @@ TEST_F(BuildFiles, NothingButEntriesIsRemovedFromACache) {
         fs::create_directories(fs::path(scratch_.path(file)).parent_path());
         scratch_.write(file, "libtex-cache 1 somebody's notes\n");
     }
-    victims_.write(std::string(64, 'e'), "libtex-cache 2 nobody may remove this\n");
+    victims_.write(std::string(64, 'e'), "libtex-cache 3 nobody may remove this\n");
     link(victim(), "cache/ab/ab" + std::string(62, 'd'));
     link(victims_.path(), "cache/ee");
     ASSERT_EQ(build({"--cache", "cache", "--cache-size", "1"}).code, 0);

@@ -18,7 +18,8 @@ std::string refusal(const std::string& text) {
     Console console("build-normals", host);
     try {
         const Manifest manifest = parse_manifest("n.toml", text, step_names());
-        for (const RuleSettings& rule : manifest.rules) const Recipe recipe(manifest, rule, 1, "", console);
+        ProgramPool pool;
+        for (const RuleSettings& rule : manifest.rules) const Recipe recipe(manifest, rule, 1, "", pool, console);
     } catch (const UsageError& error) {
         return error.what();
     }
@@ -57,7 +58,8 @@ outputs = [ {}, { format = "bc5", name = "{stem}_2.dds" } ]
     ASSERT_EQ(rule.steps.size(), 2u);
     MemoryHost host;
     Console console("build-normals", host);
-    const Recipe recipe(manifest, rule, 1, "root", console);
+    ProgramPool pool;
+    const Recipe recipe(manifest, rule, 1, "root", pool, console);
     const std::vector<std::string> bake = {"--bumpiness=0.5", "--invert"};
     const std::vector<std::string> blend = {"--detail=d1.png", "--detail=d2.png", "--format=bc5", "--tiling=8",
                                             "--tiling=2,4"};

@@ -117,6 +117,13 @@ Row& Command::text(std::string& target, const std::string& names, std::string va
     return row;
 }
 
+Row& Command::output_file(std::string& target, const std::string& names, std::string help) {
+    Row& row = text(target, names, "FILE", std::move(help));
+    row.completes = Completes::files;
+    row.writes = true;
+    return row;
+}
+
 Row& Command::number(float& target, const std::string& names, std::string value, Range range, std::string help) {
     Row& row = option(names, std::move(value), std::move(help),
                       [&target, range](const std::string& text) { target = parse_float(text, range); });

@@ -61,7 +61,9 @@ struct Row {
     Completes completes = Completes::nothing;
     bool hidden = false;      // left out of the help
     bool repeatable = false;  // may be given more than once
-    bool writes = false;      // the value names a file that is written
+    // The value names a file that is written. This is the only list of such options: the manifest makes outputs of
+    // those that a step can have, and --help --json prints them.
+    bool writes = false;
 
     std::vector<std::string> given;                     // the values on the command line, in order; empty for a flag
     std::function<void(const std::string& text)> take;  // called with each value; throws UsageError
@@ -97,6 +99,8 @@ public:
                 std::function<void(const std::string& text)> take);
     Row& flag(bool& target, const std::string& names, std::string help);
     Row& text(std::string& target, const std::string& names, std::string value, std::string help);
+    // A file that is written.
+    Row& output_file(std::string& target, const std::string& names, std::string help);
     Row& number(float& target, const std::string& names, std::string value, Range range, std::string help);
     Row& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
     Row& number(int& target, const std::string& names, std::string value, Range range, std::string help);

@@ -37,6 +37,7 @@ struct FileStatus {
 // What the last name is itself, if it is a link.
 [[nodiscard]] std::optional<FileStatus> status_of_link(const std::string& path);
 [[nodiscard]] std::optional<FileStatus> status_of_open(int fd);
+[[nodiscard]] std::optional<FileStatus> status_of_open(std::FILE* file);
 
 // A file that is read as bytes.
 using ReadFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;

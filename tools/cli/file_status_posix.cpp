@@ -57,6 +57,8 @@ std::optional<FileStatus> status_of_open(int fd) {
     return status_from(status);
 }
 
+std::optional<FileStatus> status_of_open(std::FILE* file) { return status_of_open(fileno(file)); }
+
 ReadFile open_to_read(const std::string& path) { return {std::fopen(path.c_str(), "rbe"), close_file}; }
 
 ReadFile open_at_once(const std::string& path, Links links, FileStatus& status) {

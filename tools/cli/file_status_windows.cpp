@@ -77,6 +77,8 @@ std::optional<FileStatus> status_of_open(int fd) {
     return status_from(*found);
 }
 
+std::optional<FileStatus> status_of_open(std::FILE* file) { return status_of_open(_fileno(file)); }
+
 ReadFile open_to_read(const std::string& path) { return opened(path, FILE_ATTRIBUTE_NORMAL); }
 
 ReadFile open_at_once(const std::string& path, Links links, FileStatus& status) {

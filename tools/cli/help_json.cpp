@@ -110,6 +110,7 @@ Json option_json(const Row& row) {
     if (!row.words.empty()) json["words"] = words_json(row);
     add_default(json, row, type, asked);
     if (row.repeatable && !row.value.empty()) json["repeatable"] = true;
+    if (row.writes) json["writes"] = true;
     json["group"] = row.group;
     json["text"] = row.help;
     return json;

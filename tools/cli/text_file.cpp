@@ -2,8 +2,11 @@
 
 #include "cli/text_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -20,11 +23,20 @@ Result<std::string> read_text_file(const std::string& path, std::size_t most) {
     const std::string name = from_stdin ? "standard input" : path;
     const auto failed = [&] { return Error{ErrorCode::io, name, system_reason(errno)}; };
     if (file == nullptr) return failed();
+    const std::optional<FileStatus> status = status_of_open(file);
+    const bool has_size = status && status->is_regular();
+    if (!has_size) most = std::min(most, kMostOfTextFile);
+    const auto excess = [&] { return Error{ErrorCode::bad_data, name, fmt::format("has more than {} bytes", most)}; };
     std::string text;
+    if (has_size && status->size > 0) {
+        const auto size = static_cast<std::uint64_t>(status->size);
+        if (size > most && !from_stdin) return excess();
+        text.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)));
+    }
     char buffer[65536];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
+        if (count > most - text.size()) return excess();
         text.append(buffer, count);
-        if (text.size() > most) return Error{ErrorCode::bad_data, name, fmt::format("has more than {} bytes", most)};
     }
     if (std::ferror(file) != 0) return failed();
     return text;

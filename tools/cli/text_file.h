@@ -11,11 +11,13 @@
 
 namespace tex::cli {
 
-// The most bytes of files whose size nothing else limits. It ends the reading of devices such as /dev/zero.
-inline constexpr std::size_t kMostOfTextFile = std::size_t{1} << 30;
+// The most bytes of lists and baselines. It also ends the reading of devices such as /dev/zero.
+inline constexpr std::size_t kMostOfTextFile = std::size_t{64} << 20;
+// The most bytes of states, plans and reports of whole trees.
+inline constexpr std::size_t kMostOfRecord = std::size_t{1} << 30;
 
-// The bytes of a file; "-" is standard input. Errors: io; bad_data, if there are more than `most` bytes (none of them
-// beyond these is read).
+// The bytes of a file; "-" is standard input. Errors: io; bad_data, if there are more than `most` bytes, or more than
+// kMostOfTextFile in what is no regular file. A regular file says so before any of it is read.
 [[nodiscard]] Result<std::string> read_text_file(const std::string& path, std::size_t most = kMostOfTextFile);
 
 // Whether a write to `path` goes through: to standard output, a FIFO or a device.

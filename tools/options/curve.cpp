@@ -30,7 +30,7 @@ void CurveOptions::add(Command& command) {
         "four times the mean";
     command.number(rdo_.window, "--rdo-window", "BYTES", range_of(&RdoOptions::window),
                    "how far back to look for what a block can copy");
-    command.text(plot_, "--plot", "FILE", "draw the curve, as SVG").completes = Completes::files;
+    command.output_file(plot_, "--plot", "draw the curve, as SVG");
 }
 
 std::vector<PackOptions> CurveOptions::settings() const {

@@ -17,6 +17,7 @@
 #include "files/path_names.h"
 #include "files/system_error.h"
 #include "files/through_file.h"
+#include "tasks/engines.h"
 #include "tasks/find_files.h"
 #include "tasks/folders.h"
 
@@ -29,10 +30,9 @@ namespace fs = std::filesystem;
 
 void FileOptions::add(Command& command, bool joins) {
     command.group("Files");
-    Row& row = command.text(output, "-o,--output", "FILE",
-                            joins ? "the output, of all inputs together; - is standard output"
-                                  : "the output of a single input; - is standard output");
-    row.completes = Completes::files;
+    Row& row = command.output_file(output, "-o,--output",
+                                   joins ? "the output, of all inputs together; - is standard output"
+                                         : "the output of a single input; - is standard output");
     row.take = [take = row.take](const std::string& text) {  // /dev/stdout and its other names
         take(named_descriptor(text) == kStandardOutput ? "-" : text);
     };
@@ -47,8 +47,7 @@ void FileOptions::add(Command& command, bool joins) {
         .completes = Completes::directories;
     add_list(command);
     command.flag(update, "--update", "skip inputs whose outputs are newer than everything that they are made from");
-    command.text(depfile, "--depfile", "FILE", "write what each output was made from, for Make and Ninja").completes =
-        Completes::files;
+    command.output_file(depfile, "--depfile", "write what each output was made from, for Make and Ninja");
     command.flag(no_clobber, "--no-clobber", "never replace a file");
     command.flag(no_sync, "--no-sync", "do not wait until outputs are on the disk");
     command.check([this, &command] { check(command); });
@@ -160,6 +159,14 @@ std::string FileOptions::place(const std::string& pattern, const NameFields& fie
         throw UsageError(printable(fields.dir + "/" + fields.stem + fields.ext), "its {dir} leads out of --out-dir");
     }
     return slashed(fs::path(out_dir) / fs::path(file).relative_path());
+}
+
+std::string FileOptions::further(const std::string& option, const std::string& pattern, const Task& task,
+                                 std::string_view format) const {
+    NameFields fields = name_fields(task.further ? task.further->input : task.input);
+    fields.format = format;
+    if (task.engine != nullptr) fields.engine = task.engine->name;
+    return task.further ? task.further->path_for(option, NamePattern(pattern).expand(fields)) : place(pattern, fields);
 }
 
 }  // namespace tex::cli

@@ -5,11 +5,13 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.h"
 #include "tasks/collisions.h"
 #include "tasks/name_pattern.h"
+#include "tasks/task.h"
 #include "tasks/udim.h"
 
 namespace tex::cli {
@@ -50,6 +52,10 @@ struct FileOptions {
 
     // The output name that `pattern` gives, below --out-dir if that option is given.
     [[nodiscard]] std::string place(const std::string& pattern, const NameFields& fields) const;
+    // The file of an option that writes besides the output, such as --height-out, whose value is `pattern`. `format` is
+    // what {format} stands for.
+    [[nodiscard]] std::string further(const std::string& option, const std::string& pattern, const Task& task,
+                                      std::string_view format = {}) const;
 
 private:
     void add_list(Command& command);

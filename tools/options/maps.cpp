@@ -25,9 +25,7 @@ Format map_format(Container container) {
 void MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
     name_ = std::move(name);
-    Row& row = command.text(pattern_, name_, "FILE", std::move(help));
-    row.completes = Completes::files;
-    row.writes = true;
+    command.output_file(pattern_, name_, std::move(help));
     command.check([this, &command] {
         if (command.given(name_) && pattern_.empty()) throw UsageError(name_ + ": needs a value that is not empty");
         if (pattern_ == "-") throw UsageError(name_ + ": needs a file, not standard output");
@@ -37,9 +35,7 @@ void MapOutput::add(Command& command, const FileOptions& files, std::string name
 }
 
 std::string MapOutput::path_of(const Task& task) const {
-    const auto place = task.places.find(name_);
-    return with_tile(place != task.places.end() ? place->second : files_->place(pattern_, name_fields(task.input)),
-                     task.tile);
+    return with_tile(files_->further(name_, pattern_, task), task.tile);
 }
 
 Container MapOutput::container_of_path(const std::string& path) const {

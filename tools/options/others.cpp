@@ -208,23 +208,26 @@ void OtherFiles::add(Command& command, const FileOptions& files, const NormalsRe
     files_ = &files;
     for (const Apart& apart : kApart) {
         const std::string help = fmt::format("write {} to a file; of many inputs a pattern as --name", apart.what);
-        command.text(this->*apart.pattern, apart.option, "FILE", help).completes = Completes::files;
+        command.output_file(this->*apart.pattern, apart.option, help);
     }
     command.check([this, &command, &reads] {
         for (const Apart& apart : kApart) {
             const std::string& pattern = this->*apart.pattern;
             if (command.given(apart.option) && (pattern.empty() || pattern == "-"))
                 throw UsageError(apart.option, "needs the name of a file");
+            if (NamePattern(pattern).uses("level") || NamePattern(pattern).uses("format"))
+                throw UsageError(apart.option, "{level} and {format} have no meaning here");
         }
         if (!length_.empty() && reads.length_in != LengthIn::occlusion)
             throw UsageError("--length-out needs --length-in occlusion");
     });
 }
 
-std::optional<OtherFile> OtherFiles::file(const std::string& pattern, const Task& task) const {
+std::optional<OtherFile> OtherFiles::file(const Apart& apart, const Task& task) const {
+    const std::string& pattern = this->*apart.pattern;
     if (pattern.empty()) return std::nullopt;
     OtherFile file;
-    file.output = files_->place(pattern, name_fields(task.input));
+    file.output = files_->further(apart.option, pattern, task);
     const auto container = container_of(file.output);
     if (!container) throw UsageError(printable(file.output), "unsupported output format");
     file.container = *container;
@@ -235,14 +238,14 @@ std::optional<OtherFile> OtherFiles::file(const std::string& pattern, const Task
 
 void OtherFiles::amend(Task& task) const {
     for (const Apart& apart : kApart) {
-        if (const auto out = file(this->*apart.pattern, task)) task.more_outputs.push_back(out->output);
+        if (const auto out = file(apart, task)) task.more_outputs.push_back(out->output);
     }
 }
 
 void OtherFiles::check(const std::vector<Task>& tasks) const {
     for (const Task& task : tasks) {
         for (const Apart& apart : kApart) {
-            const auto out = file(this->*apart.pattern, task);
+            const auto out = file(apart, task);
             if (out && !can_hold(out->container, out->format)) {
                 throw UsageError(printable(out->output), fmt::format("{} files cannot hold a single channel",
                                                                      name_of(kContainerNames, out->container)));
@@ -252,12 +255,12 @@ void OtherFiles::check(const std::vector<Task>& tasks) const {
 }
 
 void OtherFiles::apply(const Task& task, PackFileOptions& options) const {
-    for (const Apart& apart : kApart) options.*apart.file = file(this->*apart.pattern, task);
+    for (const Apart& apart : kApart) options.*apart.file = file(apart, task);
 }
 
 void OtherFiles::report(Job& job) const {
     for (const Apart& apart : kApart) {
-        if (const auto out = file(this->*apart.pattern, job.task)) {
+        if (const auto out = file(apart, job.task)) {
             job.wrote(out->output);
             job.report[apart.key] = out->output;
         }

@@ -111,7 +111,7 @@ private:
     };
     static const std::array<Apart, 3> kApart;
 
-    [[nodiscard]] std::optional<OtherFile> file(const std::string& pattern, const Task& task) const;
+    [[nodiscard]] std::optional<OtherFile> file(const Apart& apart, const Task& task) const;
 
     const FileOptions* files_ = nullptr;
     std::string blue_, alpha_, length_;  // patterns

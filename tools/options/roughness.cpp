@@ -17,10 +17,12 @@
 namespace tex::cli {
 namespace {
 
+constexpr const char* kOption = "--roughness-out";
+
 // Throws UsageError if the name does not show the container.
 Container container_for(const std::string& path) {
     if (const auto container = container_of(path)) return *container;
-    throw UsageError("--roughness-out", fmt::format("{}: unsupported output format", printable(path)));
+    throw UsageError(kOption, fmt::format("{}: unsupported output format", printable(path)));
 }
 
 }  // namespace
@@ -28,11 +30,9 @@ Container container_for(const std::string& path) {
 void RoughnessOptions::add(Command& command, const FileOptions& files) {
     files_ = &files;
     command.group("Roughness");
-    command
-        .text(
-            output_, "--roughness-out", "FILE",
-            "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
-        .completes = Completes::files;
+    command.output_file(
+        output_, kOption,
+        "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name");
     Row& input =
         command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",
                        [this](const std::string& text) { take_input(text); });
@@ -43,9 +43,8 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
         "bc4 in dds, ktx2; astc-4x4 in astc; r16 in tiff; half in exr; else r8";
     command.check([this, &command] {
         const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
-        if (command.given("--roughness-out") && output_.empty())
-            throw UsageError("--roughness-out", "needs a value that is not empty");
-        if (output_ == "-") throw UsageError("--roughness-out", "needs a file, not standard output");
+        if (command.given(kOption) && output_.empty()) throw UsageError(kOption, "needs a value that is not empty");
+        if (output_ == "-") throw UsageError(kOption, "needs a file, not standard output");
         if (!is_given() && !idle.empty()) throw UsageError(idle.front() + " does nothing without --roughness-out");
     });
 }
@@ -73,11 +72,9 @@ ChannelFile RoughnessOptions::input_of(const Task& task) const {
 }
 
 std::string RoughnessOptions::output_of(const Task& task) const {
-    NameFields fields = name_fields(task.input);
-    if (task.engine != nullptr) fields.engine = task.engine->name;
-    if (NamePattern(output_).uses("format"))
-        fields.format = name_of(kRoughnessFormatNames, format_in(container_for(NamePattern(output_).expand(fields))));
-    return files_->place(output_, fields);
+    const std::string path = files_->further(kOption, output_, task);
+    if (!NamePattern(output_).uses("format")) return path;
+    return files_->further(kOption, output_, task, name_of(kRoughnessFormatNames, format_in(container_for(path))));
 }
 
 Format RoughnessOptions::format_in(Container container) const {

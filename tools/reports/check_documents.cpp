@@ -18,17 +18,17 @@ namespace tex::cli {
 
 void CheckDocuments::add(Command& command) {
     command.group("Documents");
-    const auto add_file = [&](std::string& path, const char* name, const char* help) {
-        command.text(path, name, "FILE", help).completes = Completes::files;
-    };
-    add_file(page_path_, "--report", "write a page with the findings and pictures, on which the light can be moved");
-    add_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
-    add_file(junit_, "--junit", "write the findings as JUnit XML");
+    command.output_file(page_path_, "--report",
+                        "write a page with the findings and pictures, on which the light can be moved");
+    command.output_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
+    command.output_file(junit_, "--junit", "write the findings as JUnit XML");
     command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
-    add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
-    add_file(baseline_written_, "--baseline-write",
-             "write such a file with all findings, and do not fail for them; files that cannot be read still fail");
-    add_file(depfile_, "--depfile", "write what the documents were made from, for Make and Ninja");
+    command.text(baseline_path_, "--baseline", "FILE", "accept the findings that this file lists").completes =
+        Completes::files;
+    command.output_file(
+        baseline_written_, "--baseline-write",
+        "write such a file with all findings, and do not fail for them; files that cannot be read still fail");
+    command.output_file(depfile_, "--depfile", "write what the documents were made from, for Make and Ninja");
 }
 
 std::vector<std::string> CheckDocuments::written() const {

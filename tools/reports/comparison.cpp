@@ -70,10 +70,8 @@ ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& 
 
 void CompareDocuments::add(Command& command) {
     command.group("Heat map");
-    command
-        .text(heat_map_path_, "--heatmap", "FILE",
-              "write a picture of the angles with a legend (of the first level compared)")
-        .completes = Completes::files;
+    command.output_file(heat_map_path_, "--heatmap",
+                        "write a picture of the angles with a legend (of the first level compared)");
     command
         .option("--heatmap-scale", "DEGREES", "the angle at the end of the legend",
                 [this](const std::string& text) {
@@ -81,13 +79,10 @@ void CompareDocuments::add(Command& command) {
                 })
         .preset = "the largest angle";
     command.group("Report");
-    command
-        .text(page_path_, "--report", "FILE",
-              "write a page with the figures and pictures of both maps, on which the light can be moved")
-        .completes = Completes::files;
-    command
-        .text(depfile_, "--depfile", "FILE", "write what the heat map and the page were made from, for Make and Ninja")
-        .completes = Completes::files;
+    command.output_file(page_path_, "--report",
+                        "write a page with the figures and pictures of both maps, on which the light can be moved");
+    command.output_file(depfile_, "--depfile",
+                        "write what the heat map and the page were made from, for Make and Ninja");
 }
 
 void CompareDocuments::check(const std::vector<std::string>& inputs) const {

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,22 +18,29 @@ namespace tex::cli {
 
 struct Engine;
 
+// Where the files of options that write go, such as that of --height-out, if not the command line decides about names.
+struct FurtherPlaces {
+    std::string input;  // after which patterns name them
+    // The path for the name that an option's pattern gives; both contain kLevelMark if each level has its own file.
+    // Throws UsageError.
+    std::function<std::string(const std::string& option, const std::string& name)> path_for;
+};
+
 // The names of outputs contain kLevelMark (name_pattern.h) if each level has its own file.
 struct Task {
     std::string input;
     std::string output;  // empty if the command writes no output for each input
     Container container = Container::dds;
-    std::vector<std::string> joined = {};        // the inputs after the first one that go into the same output
-    std::vector<std::string> shared = {};        // files that options name and every output depends on
-    std::vector<std::string> own = {};           // files that options name and only this output depends on
-    std::string origin = {};                     // of a later step: the input of the first one; else empty
-    std::vector<std::string> more_outputs = {};  // outputs besides the first one
-    // The files of options that write, such as --height-out, where the caller decides about names; else empty.
-    std::map<std::string, std::string> places = {};
-    const Engine* engine = nullptr;          // what the output is for, if --for says it
-    int tile = 0;                            // the UDIM tile (udim.h), or 0
-    std::string pattern = {};                // the input's name with the mark, if that says the tile
-    std::optional<TilePosition> place = {};  // of the input, if it is a tile of a terrain (grid.h)
+    std::vector<std::string> joined = {};               // the inputs after the first one that go into the same output
+    std::vector<std::string> shared = {};               // files that options name and every output depends on
+    std::vector<std::string> own = {};                  // files that options name and only this output depends on
+    std::string origin = {};                            // of a later step: the input of the first one; else empty
+    std::vector<std::string> more_outputs = {};         // outputs besides the first one
+    std::shared_ptr<const FurtherPlaces> further = {};  // null: FileOptions::place() decides
+    const Engine* engine = nullptr;                     // what the output is for, if --for says it
+    int tile = 0;                                       // the UDIM tile (udim.h), or 0
+    std::string pattern = {};                           // the input's name with the mark, if that says the tile
+    std::optional<TilePosition> place = {};             // of the input, if it is a tile of a terrain (grid.h)
     // The tiles around it, row by row, with an empty name for its own and for those that do not exist.
     std::vector<std::string> around = {};
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself

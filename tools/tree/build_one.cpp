@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <new>
+#include <set>
 #include <system_error>
 #include <utility>
 
@@ -25,6 +27,9 @@ namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Of textures, which are as large as they are.
+constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
 
 // The output of `maker` that the recipe reads.
 std::string needed_file(const BuildTask& maker, const std::vector<Recipe>& recipes, const Recipe& recipe) {
@@ -53,11 +58,11 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     const auto in_memory = [&waiting] { return waiting.emplace_back().path(); };
     std::vector<WantedOutput> wanted;
     for (const Stale& one : stale) {
-        const std::string target = contents_.path(task.outputs[one.index]);
-        for (const std::string& file : recipe.files_of(task.input, one.index).all()) {
-            if (const auto created = create_folders_of(contents_.path(file)); !created) return created.error();
+        WantedOutput& output = wanted.emplace_back(WantedOutput{one.index, contents_.path(task.outputs[one.index])});
+        for (const std::string& path : paths_of(task, one.index).all()) {
+            if (const auto created = create_folders_of(path); !created) return created.error();
+            if (is_checked) (path == output.path ? output.write_to : output.further[path]) = in_memory();
         }
-        wanted.push_back({one.index, target, is_checked ? in_memory() : std::string()});
     }
     MakeSettings settings{running_, write, [&](double fraction) {
                               advance(counted, static_cast<double>(task.size), fraction);
@@ -83,10 +88,13 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     }
     if (outcome.code == ExitCode::findings) return made;
     for (const WantedOutput& output : wanted) {
-        const auto bytes = read_text_file(output.write_to);
-        if (!bytes) return bytes.error();
-        if (const auto put = write_text_file(output.path, *bytes, write); !put)
-            return with_remedy(put.error(), output.path);
+        std::vector<std::pair<std::string, std::string>> files = {{output.path, output.write_to}};
+        files.insert(files.end(), output.further.begin(), output.further.end());
+        for (const auto& [path, complete] : files) {
+            const auto bytes = read_text_file(complete, kNoLimit);
+            if (!bytes) return bytes.error();
+            if (const auto put = write_text_file(path, *bytes, write); !put) return with_remedy(put.error(), path);
+        }
     }
     return made;
 }
@@ -116,7 +124,7 @@ Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placem
 // The files of an output as paths.
 OutputFiles BuildRun::paths_of(const BuildTask& task, std::size_t output) const {
     OutputFiles files = recipes_[task.recipe].files_of(task.input, output);
-    if (!files.levels.empty()) files.levels = contents_.path(files.levels);
+    for (std::string& file : files.levels) file = contents_.path(file);
     for (std::string& file : files.files) file = contents_.path(file);
     return files;
 }
@@ -200,7 +208,11 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
                                   const std::vector<std::optional<FileStamp>>& stamps, double& counted,
                                   Outcome& outcome) {
     const auto is_unchanged = [&] { return are_unchanged(task, stamps, judgement.inputs.digest); };
-    Placement fetched(files_, is_unchanged);
+    std::set<std::string> files;
+    for (std::size_t k = 0; k < task.outputs.size(); ++k) {
+        for (std::string& file : paths_of(task, k).all()) files.insert(std::move(file));
+    }
+    Placement fetched(files_, files, is_unchanged);
     const Result<void> done = fetch(task, judgement, fetched, outcome);
     if (fetched.met_change()) return false;
     if (!done) {
@@ -212,7 +224,7 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
         outcome.report["status"] = "cached";
         return true;
     }
-    Placement placement(files_, is_unchanged);
+    Placement placement(files_, std::move(files), is_unchanged);
     const Result<Made> made = make(task, judgement.stale, placement.watched(write_), counted, outcome);
     if (placement.met_change()) return false;
     if (!made) {
@@ -249,7 +261,7 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
     if (cache_is_full_) return;
     std::vector<std::string> contents;
     for (const std::string& path : paths) {
-        auto bytes = read_text_file(path);
+        auto bytes = read_text_file(path, kNoLimit);
         const auto placed = placement.placed().find(path);
         if (!bytes || placed == placement.placed().end() || digest_of(*bytes) != placed->second.digest) return;
         contents.push_back(std::move(*bytes));

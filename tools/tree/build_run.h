@@ -10,6 +10,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tasks/outcome.h"
@@ -38,7 +39,7 @@ public:
         : recipes_(recipes), work_(work), options_(options), running_(running), console_(console),
           contents_(options.root, state_.memos), judge_(state_, contents_, options.output_version),
           reporter_(console, work.tasks.size(), running.json, running.json ? Printed::at_once : Printed::in_order),
-          files_(recipes, work.tasks, options.root, documents_of(options)), cache_(options.cache),
+          files_(recipes, work.tasks, options.root, documents_of(options)), cache_(options.cache, memory_of(options)),
           failed_(work.tasks.size()), stale_(work.tasks.size()), results_(work.tasks.size()) {
         write_.sync = !options.no_sync;
         write_.follow_links = false;
@@ -49,6 +50,7 @@ public:
 
 private:
     [[nodiscard]] static RunDocuments documents_of(const BuildOptions& options);
+    [[nodiscard]] static std::int64_t memory_of(const BuildOptions& options);
     Result<void> open_files();
     void read_state();
     void save_state(BuildState::Memos memos_of);
@@ -78,7 +80,9 @@ private:
                       double& counted, Outcome& outcome);
     [[nodiscard]] Error with_remedy(const Error& error, const std::string& output) const;
     void prune();
-    bool remove_files(const OutputRecord& output, const FileTable<bool>& current);
+    [[nodiscard]] std::optional<std::pair<std::string, std::string>> place_by_rules(const std::string& input,
+                                                                                    const std::string& file) const;
+    bool remove_files(const OutputRecord& output, const FileTable<bool>& current, std::vector<std::string>& foreign);
     [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);

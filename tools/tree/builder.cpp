@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <tuple>
@@ -25,7 +26,9 @@
 #include "options/files.h"
 #include "tasks/depfile.h"
 #include "tasks/folders.h"
+#include "tasks/name_pattern.h"
 #include "tree/build_run.h"
+#include "tree/removal.h"
 
 namespace tex::cli {
 // What this run reads and writes besides textures.
@@ -38,6 +41,10 @@ RunDocuments BuildRun::documents_of(const BuildOptions& options) {
     return documents;
 }
 
+std::int64_t BuildRun::memory_of(const BuildOptions& options) {
+    return options.memory > 0 ? options.memory : physical_memory() / 2;
+}
+
 // Checks that the files which this run replaces are its own.
 Result<void> BuildRun::open_files() {
     const std::string& state = options_.is_shard ? options_.shard_state : options_.state_file;
@@ -47,10 +54,10 @@ Result<void> BuildRun::open_files() {
 }
 
 void BuildRun::read_state() {
-    if (const auto text = read_text_file(options_.state_file)) state_ = BuildState::parse(*text);
+    if (const auto text = read_text_file(options_.state_file, kMostOfRecord)) state_ = BuildState::parse(*text);
     if (options_.shard_state.empty()) return;
     // What an earlier try of this shard has made.
-    if (const auto text = read_text_file(options_.shard_state)) {
+    if (const auto text = read_text_file(options_.shard_state, kMostOfRecord)) {
         BuildState earlier = BuildState::parse(*text);
         for (auto& [name, record] : earlier.outputs) state_.outputs[name] = std::move(record);
         for (const auto& [name, memo] : earlier.memos) state_.memos[name] = memo;
@@ -174,9 +181,7 @@ void BuildRun::run_tasks() {
         tasks.push_back(queued(task));
         all_bytes_ += static_cast<double>(task.size);
     }
-    std::int64_t memory = options_.memory;
-    if (memory == 0) memory = physical_memory() / 2;
-    TaskQueue queue(std::move(tasks), share_details(memory));
+    TaskQueue queue(std::move(tasks), share_details(memory_of(options_)));
     const int threads = running_.threads > 0 ? running_.threads : tbb::info::default_concurrency();
     const std::size_t workers = std::min({static_cast<std::size_t>(threads), kMostFilesAtOnce, work_.tasks.size()});
     // The workers are threads of their own: a worker of TBB that waits for a task could be the one that the task needs.
@@ -195,48 +200,78 @@ void BuildRun::run_tasks() {
 // Removes the outputs that no rule makes any more.
 void BuildRun::prune() {
     std::vector<std::string> wanted;
-    for (const BuildTask& task : work_.tasks) wanted.insert(wanted.end(), task.outputs.begin(), task.outputs.end());
+    // Files that are outputs under any name: a folder may have become a link to one.
+    FileTable<bool> current;
+    for (const BuildTask& task : work_.tasks) {
+        wanted.insert(wanted.end(), task.outputs.begin(), task.outputs.end());
+        for (const std::string& output : task.outputs) current.add_place(contents_.path(with_level(output, 0)), true);
+    }
     std::sort(wanted.begin(), wanted.end());
     const auto is_wanted = [&](const auto& record) {
         return std::binary_search(wanted.begin(), wanted.end(), record.first);
     };
-    // Files that are outputs under any name: a folder may have become a link to one.
-    FileTable<bool> current;
     for (const auto& record : state_.outputs) {
         if (!is_wanted(record)) continue;
         for (const auto& [file, digest] : record.second.files) current.add_place(contents_.path(file), true);
     }
+    std::vector<std::string> foreign;
     for (auto record = state_.outputs.begin(); record != state_.outputs.end();) {
-        const bool is_gone = !is_wanted(*record) && remove_files(record->second, current);
+        const bool is_gone = !is_wanted(*record) && remove_files(record->second, current, foreign);
         lost_names_ = lost_names_ || is_gone;
         record = is_gone ? state_.outputs.erase(record) : std::next(record);
     }
+    if (foreign.empty()) return;
+    console_.warning(
+        fmt::format("{} {} not removed, such as {}: no rule of this manifest gives an output such a name; remove "
+                    "what is not needed, or run once with a last rule that has the old match and name",
+                    foreign.size(), foreign.size() == 1 ? "file is" : "files are", printable(foreign.front())));
 }
 
-// Removes the files of an output. Returns false if the state must go on to know them.
-bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& current) {
+// The folder of a file that a rule can make of this input, and its name there. Nothing if no rule can: whoever hands
+// over a folder could write a state that names any file.
+std::optional<std::pair<std::string, std::string>> BuildRun::place_by_rules(const std::string& input,
+                                                                            const std::string& file) const {
+    for (const Recipe& recipe : recipes_) {
+        if (auto name = recipe.name_below_out_dir(input, file))
+            return std::pair(path_from(options_.root, recipe.rule().out_dir), std::move(*name));
+    }
+    return std::nullopt;
+}
+
+// Removes the files of an output. Adds those that no rule can have made to `foreign`. Returns false if the state must
+// go on to know them.
+bool BuildRun::remove_files(const OutputRecord& output, const FileTable<bool>& current,
+                            std::vector<std::string>& foreign) {
     bool is_gone = true, removes = false;
     Json obsolete = Json::array();
     for (const auto& [file, digest] : output.files) {
         const std::string path = contents_.path(file);
-        const Result<Digest> now = contents_.digest(file);
-        if (!now || current.find(path) != nullptr) continue;
-        const auto status = status_of_link(path);
-        const bool is_ours = *now == digest && status && status->is_regular();
+        if (!status_of_link(path) || current.find(path) != nullptr) continue;
+        const auto place = place_by_rules(output.input, file);
+        if (!place) {
+            foreign.push_back(file);
+            is_gone = false;
+            continue;
+        }
         if (files_.is_read(path)) {
             console_.warning(fmt::format("{} is not removed: this run reads it", path));
-        } else if (!is_ours) {
-            console_.warning(fmt::format("{} is not removed: something else has changed it", path));
-        } else if (options_.dry_run) {
-            if (!running_.json) std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
-            obsolete.push_back(file);
-            is_gone = false;
-            removes = true;
-        } else if (!remove_file(path)) {
-            console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
-            is_gone = false;
-        } else {
-            removes = true;
+            continue;
+        }
+        switch (remove_output(place->first, place->second, digest, options_.dry_run)) {
+            case Removal::missing: break;
+            case Removal::changed:
+                console_.warning(fmt::format("{} is not removed: something else has changed it", path));
+                break;
+            case Removal::failed:
+                console_.warning(fmt::format("{}: cannot be removed: {}", path, system_reason(errno)));
+                is_gone = false;
+                break;
+            case Removal::removed:
+                removes = true;
+                if (!options_.dry_run) break;
+                if (!running_.json) std::ignore = console_.print(fmt::format("remove {}\n", printable(file)));
+                obsolete.push_back(file);
+                is_gone = false;
         }
     }
     if (removes) ++totals_.pruned;
@@ -301,9 +336,13 @@ ExitCode BuildRun::run() {
         return ExitCode::io;
     }
     if (options_.finished && !options_.dry_run) code = std::max(code, options_.finished(results_, state_));
+    std::set<const Converter*> finished;  // outputs share programs
+    const auto finish = [&](const ReadyCommand& command) {
+        if (finished.insert(command.converter).second) command.converter->finish_steps(console_);
+    };
     for (const Recipe& recipe : recipes_) {
-        for (const ReadyCommand& command : recipe.before()) command.converter->finish_steps(console_);
-        for (const RecipeOutput& output : recipe.outputs()) output.last.converter->finish_steps(console_);
+        for (const ReadyCommand& command : recipe.before()) finish(command);
+        for (const RecipeOutput& output : recipe.outputs()) finish(output.last);
     }
     return std::max(code, print_summary(false));
 }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <new>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -20,7 +22,16 @@ std::string cache_head() { return fmt::format("libtex-cache {} ", kCacheVersion)
 
 // The first line of the entry `key`, whose bytes are `body`.
 std::string first_line(const Digest& key, std::string_view body) {
-    return cache_head() + key.hex() + " " + digest_of(body).hex() + "\n";
+    return fmt::format("{}{} {} {}\n", cache_head(), key.hex(), digest_of(body).hex(), body.size());
+}
+
+// Whether a file that begins so and has this size can be the entry `key`: its first line is one, and says the size.
+bool can_be_entry(const Digest& key, std::string_view begin, std::int64_t size) {
+    const std::string_view line = begin.substr(0, std::min(begin.find('\n'), begin.size() - 1) + 1);
+    const std::string head = cache_head() + key.hex() + " ";
+    constexpr std::size_t kSum = 64 + 1;
+    if (!line.ends_with('\n') || !line.starts_with(head) || line.size() <= head.size() + kSum) return false;
+    return line.substr(head.size() + kSum) == fmt::format("{}\n", size - static_cast<std::int64_t>(line.size()));
 }
 
 // If an output has several files, there is an entry for each of them, and one with their number.
@@ -47,7 +58,14 @@ Result<void> Cache::open(bool is_read_only) const {
 
 // The bytes of an entry that is there and undamaged.
 std::optional<std::string> Cache::read(const Digest& key) {
-    auto text = read_cache_entry(folder_, key.hex());
+    std::optional<std::string> text;
+    try {
+        text = read_cache_entry(folder_, key.hex(), [&](std::string_view begin, std::int64_t size) {
+            return size <= most_ && can_be_entry(key, begin, size);
+        });
+    } catch (const std::bad_alloc&) {
+        text = std::string();
+    }
     if (!text) return std::nullopt;
     const std::size_t newline = text->find('\n'), end = newline == std::string::npos ? text->size() : newline + 1;
     const std::string_view line = std::string_view(*text).substr(0, end), body = std::string_view(*text).substr(end);
@@ -66,15 +84,16 @@ Result<void> Cache::write(const Digest& key, const std::string& bytes) const {
 Result<std::vector<std::string>> Cache::fetch(const Digest& key, const OutputFiles& output, const WriteOptions& write) {
     std::size_t count = 1;
     if (has_parts(output)) count = part_count(read(count_key(key)).value_or(""));
-    const std::size_t others = output.files.size();
-    if (count < others || (output.levels.empty() && count != others)) return std::vector<std::string>();
+    const std::size_t others = output.files.size(), names = output.levels.size();
+    const std::size_t levels = names > 0 && count > others ? (count - others) / names : 0;
+    if (count != others + names * levels || (names > 0 && levels == 0)) return std::vector<std::string>();
     std::vector<std::string> files, contents;
     for (std::size_t k = 0; k < count; ++k) {
         std::optional<std::string> bytes = read(has_parts(output) ? part_key(key, k) : key);
         if (!bytes) return std::vector<std::string>();
         contents.push_back(std::move(*bytes));
-        const std::size_t levels = count - others;
-        files.push_back(k < levels ? with_level(output.levels, static_cast<int>(k)) : output.files[k - levels]);
+        files.push_back(k < names * levels ? with_level(output.levels[k / levels], static_cast<int>(k % levels))
+                                           : output.files[k - names * levels]);
     }
     for (std::size_t k = 0; k < count; ++k) {
         if (const auto written = write_text_file(files[k], contents[k], write); !written) return written.error();

@@ -2,18 +2,20 @@
 // cache.h: a folder of outputs, named by what they are made from. Many machines may share it.
 //
 //     DIR/CACHEDIR.TAG    the mark by which backup programs know a cache (bford.info/cachedir)
-//     DIR/libtex-cache    "libtex-cache 2": the version of this layout
-//     DIR/3f/3f92...      an entry: a line "libtex-cache 2 KEY SHA-256", then the bytes that have this sum
+//     DIR/libtex-cache    "libtex-cache 3": the version of this layout
+//     DIR/3f/3f92...      an entry: a line "libtex-cache 3 KEY SHA-256 SIZE", then so many bytes, which have this sum
 //
 // Whoever may write to a shared cache is not trusted with more than its entries: no link below DIR is followed, an
-// entry is a regular file that names its own key, and one that is damaged is replaced by a rename. Only entries are
-// ever removed. An entry is written under another name and renamed, so it is whole or absent, and two writers of one
-// entry write the same bytes.
+// entry is a regular file that names its own key and has the size that it says, and one that is damaged, or larger than
+// the memory that the run may take, is replaced by a rename. No more than the first line of such an entry is read. Only
+// entries are ever removed. An entry is written under another name and renamed, so it is whole or absent, and two
+// writers of one entry write the same bytes.
 
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,8 +33,9 @@ namespace tex::cli {
 // Any thread may call any of these functions.
 class Cache {
 public:
-    // An empty `folder` is no cache.
-    explicit Cache(std::string folder) : folder_(std::move(folder)) {}
+    // An empty `folder` is no cache. Entries of more than `most` bytes are not read.
+    explicit Cache(std::string folder, std::int64_t most = std::numeric_limits<std::int64_t>::max())
+        : folder_(std::move(folder)), most_(most) {}
 
     [[nodiscard]] bool is_used() const { return !folder_.empty(); }
 
@@ -57,6 +60,7 @@ private:
     [[nodiscard]] Result<void> write(const Digest& key, const std::string& bytes) const;
 
     const std::string folder_;
+    const std::int64_t most_;
     std::atomic<std::size_t> damaged_{0};
 };
 

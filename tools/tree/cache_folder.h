@@ -3,24 +3,32 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <tex/types.h>
 
 namespace tex::cli {
 
-inline constexpr int kCacheVersion = 2;
+inline constexpr int kCacheVersion = 3;
 
 // Makes a missing or empty folder a cache, unless `is_read_only` is set, and checks that any other one is a cache.
 // Throws UsageError; see Cache::open(). Errors: io.
 [[nodiscard]] Result<void> open_cache_folder(const std::string& folder, bool is_read_only);
 
-// Reads the entry `name` and sets its time of use. Nothing if there is no file of this name; an empty text if it is
-// something else than a regular file, or cannot be read.
-[[nodiscard]] std::optional<std::string> read_cache_entry(const std::string& folder, const std::string& name);
+// The longest first line of an entry.
+inline constexpr std::size_t kMostOfHead = 256;
+
+// Reads the entry `name` and sets its time of use. `accepts` sees the begin of the entry, up to kMostOfHead bytes, and
+// its size; the rest is read only if it returns true. Nothing if there is no file of this name; an empty text if it is
+// something else than a regular file, cannot be read or is not accepted. May throw std::bad_alloc.
+[[nodiscard]] std::optional<std::string> read_cache_entry(
+    const std::string& folder, const std::string& name,
+    const std::function<bool(std::string_view begin, std::int64_t size)>& accepts);
 
 // Writes the entry `name`, and replaces what has its name. Errors: io.
 [[nodiscard]] Result<void> write_cache_entry(const std::string& folder, const std::string& name,

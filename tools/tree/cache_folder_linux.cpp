@@ -162,16 +162,21 @@ Result<void> open_cache_folder(const std::string& folder, bool is_read_only) {
     return write_in(cache.get(), folder, kTag, std::string(kTagText));
 }
 
-std::optional<std::string> read_cache_entry(const std::string& folder, const std::string& name) {
+std::optional<std::string> read_cache_entry(
+    const std::string& folder, const std::string& name,
+    const std::function<bool(std::string_view begin, std::int64_t size)>& accepts) {
     const Opened cache(open(folder.c_str(), kFolderFlags));
     const Opened shelf = open_shelf(cache.get(), name);
     struct stat status {};
     if (!shelf || fstatat(shelf.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0) return std::nullopt;
     const Opened file = open_entry(shelf.get(), name, status);
     if (!file) return std::string();
+    const std::int64_t size = status.st_size;
+    const auto begin = read_all(file.get(), std::min(size, static_cast<std::int64_t>(kMostOfHead)));
+    if (!begin || begin->empty() || !accepts(*begin, size)) return std::string();
     // The time of the last use, by which entries are removed. It does not matter if this fails.
     std::ignore = futimens(file.get(), nullptr);
-    return read_all(file.get(), status.st_size).value_or(std::string());
+    return read_all(file.get(), size).value_or(std::string());
 }
 
 Result<void> write_cache_entry(const std::string& folder, const std::string& name, const std::string& text) {

@@ -125,10 +125,14 @@ Result<void> open_cache_folder(const std::string& folder, bool is_read_only) {
     return write_in(folder, kTag, std::string(kTagText));
 }
 
-std::optional<std::string> read_cache_entry(const std::string& folder, const std::string& name) {
+std::optional<std::string> read_cache_entry(
+    const std::string& folder, const std::string& name,
+    const std::function<bool(std::string_view begin, std::int64_t size)>& accepts) {
     const std::string shelf = shelf_of(folder, name), path = shelf + "/" + name;
     if (shelf.empty() || !status_of_link(path)) return std::nullopt;
     FileStatus status;
+    const auto begin = text_of_entry(path, status, kMostOfHead);
+    if (!begin || begin->empty() || !accepts(*begin, status.size)) return std::string();
     const auto text = text_of_entry(path, status);
     if (!text) return std::string();
     // The time of the last use, by which entries are removed. It does not matter if this fails.

@@ -23,19 +23,16 @@
 #include "tree/state.h"
 
 namespace tex::cli {
-namespace {}  // namespace
 
 void Farm::add(Command& command) {
     command.usage("[MANIFEST] --plan FILE");
     command.usage("--plan FILE --shard I/N [--report FILE]");
     command.usage("--plan FILE --merge REPORT...");
     command.group("Farm");
-    command.text(plan_path_, "--plan", "FILE", "write what is to be made, with its costs, for the shards of a farm")
-        .completes = Completes::files;
+    command.output_file(plan_path_, "--plan", "write what is to be made, with its costs, for the shards of a farm");
     command.option("--shard", "I/N", "make the I-th of N shares of the plan (I from 1)",
                    [this](const std::string& text) { parse_shard(text); });
-    command.text(report_, "--report", "FILE", "write what the shard has made, when it has ended").completes =
-        Completes::files;
+    command.output_file(report_, "--report", "write what the shard has made, when it has ended");
     command.flag(merges_, "--merge",
                  "check the reports of all shards and their outputs; print the shards to send again");
     command.example("build-normals --plan plan.jsonl", "Writes a plan for a farm.");
@@ -65,7 +62,7 @@ void Farm::parse_shard(const std::string& text) {
 
 Result<void> Farm::read_plan() {
     if (plan_path_.empty() || (shard_ == 0 && !merges_)) return {};
-    const auto text = read_text_file(plan_path_);
+    const auto text = read_text_file(plan_path_, kMostOfRecord);
     if (!text) return text.error();
     plan_ = parse_farm_plan(plan_path_, *text);
     return {};
@@ -118,6 +115,21 @@ ExitCode Farm::write_plan(const FarmPlan& head, const std::vector<Recipe>& recip
                                                     static_cast<double>(texels) / 1e6)));
 }
 
+// The names of outputs come from the manifest, because the plan may come from anywhere. Throws UsageError if those of
+// the texture `index` of the plan are others.
+void Farm::check_names(const std::vector<Recipe>& recipes, std::size_t index) const {
+    const BuildTask& task = plan_->tasks[index];
+    const auto misfit = [&] {
+        return UsageError(fmt::format("{}: line {}: the manifest makes other outputs of {}; make the plan again",
+                                      plan_->path, index + 2, printable(task.input)));
+    };
+    if (task.recipe >= recipes.size() || !recipes[task.recipe].takes(task.input)) throw misfit();
+    std::vector<std::string> outputs;
+    for (std::size_t n = 0; n < recipes[task.recipe].outputs().size() && task.refusal.empty(); ++n)
+        outputs.push_back(recipes[task.recipe].output_name(task.input, n));
+    if (task.refusal.empty() && outputs != task.outputs) throw misfit();
+}
+
 WorkList Farm::work_of_shard(const std::vector<Recipe>& recipes, const std::string& root, Console& console) const {
     const std::vector<std::size_t> mine = plan_->dealt(shards_)[static_cast<std::size_t>(shard_) - 1];
     std::unordered_map<std::size_t, std::size_t> place;  // in the shard, of tasks of the plan
@@ -126,17 +138,8 @@ WorkList Farm::work_of_shard(const std::vector<Recipe>& recipes, const std::stri
     std::string changed;
     std::size_t count = 0;
     for (const std::size_t k : mine) {
+        check_names(recipes, k);
         BuildTask task = plan_->tasks[k];
-        const auto misfit = [&] {
-            return UsageError(fmt::format("{}: line {}: the manifest makes other outputs of {}; make the plan again",
-                                          plan_->path, k + 2, printable(task.input)));
-        };
-        // The names of outputs come from the manifest, because the plan may come from anywhere.
-        if (task.recipe >= recipes.size() || !recipes[task.recipe].takes(task.input)) throw misfit();
-        std::vector<std::string> outputs;
-        for (std::size_t n = 0; n < recipes[task.recipe].outputs().size() && task.refusal.empty(); ++n)
-            outputs.push_back(recipes[task.recipe].output_name(task.input, n));
-        if (task.refusal.empty() && outputs != task.outputs) throw misfit();
         for (std::size_t& needed : task.needs) needed = place.at(needed);
         const auto stamp = FileStamp::of(root.empty() ? task.input : root + "/" + task.input);
         if (stamp && stamp->size != task.size && ++count == 1) changed = printable(task.input);
@@ -172,8 +175,8 @@ ExitCode Farm::run_shard(const std::vector<Recipe>& recipes, BuildOptions option
     return build(recipes, work, options, running, console);
 }
 
-ExitCode Farm::merge(const std::vector<std::string>& reports, const BuildOptions& options, const RunOptions& running,
-                     Console& console) const {
+ExitCode Farm::merge(const std::vector<Recipe>& recipes, const std::vector<std::string>& reports,
+                     const BuildOptions& options, const RunOptions& running, Console& console) const {
     RunDocuments documents{{{"the manifest", options.manifest}, {"the file of --plan", plan_path_}},
                            {{"the state of the build", options.state_file}}};
     for (const std::string& report : reports) documents.read.push_back({"the report of a shard", report});
@@ -182,7 +185,8 @@ ExitCode Farm::merge(const std::vector<std::string>& reports, const BuildOptions
         console.error(is_state.error().message());
         return exit_code(is_state.error().code);
     }
-    return merge_reports(*plan_, reports, options, running, console);
+    for (std::size_t k = 0; k < plan_->tasks.size(); ++k) check_names(recipes, k);
+    return merge_reports(*plan_, recipes, reports, options, running, console);
 }
 
 }  // namespace tex::cli

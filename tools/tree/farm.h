@@ -34,11 +34,12 @@ public:
                                       const BuildOptions& options, const RunOptions& running, Console& console) const;
     [[nodiscard]] ExitCode run_shard(const std::vector<Recipe>& recipes, BuildOptions options,
                                      const RunOptions& running, Console& console) const;
-    [[nodiscard]] ExitCode merge(const std::vector<std::string>& reports, const BuildOptions& options,
-                                 const RunOptions& running, Console& console) const;
+    [[nodiscard]] ExitCode merge(const std::vector<Recipe>& recipes, const std::vector<std::string>& reports,
+                                 const BuildOptions& options, const RunOptions& running, Console& console) const;
 
 private:
     void parse_shard(const std::string& text);
+    void check_names(const std::vector<Recipe>& recipes, std::size_t index) const;
     [[nodiscard]] WorkList work_of_shard(const std::vector<Recipe>& recipes, const std::string& root,
                                          Console& console) const;
 

@@ -43,18 +43,18 @@ Result<Judgement> Judge::judge(const BuildTask& task, const Recipe& recipe) {
         stale.named = recipe.outputs()[k].named;
         stale.named.emplace_back("output-version", fmt::format("{}", version_));
         stale.named.emplace_back("input", extension);
-        if (find_why(task.outputs[k], recipe, judgement.inputs, stale)) judgement.stale.push_back(std::move(stale));
+        if (find_why(task, recipe, judgement.inputs, stale)) judgement.stale.push_back(std::move(stale));
     }
     return judgement;
 }
 
 // Finds out why an output must be made. Returns false if it is up to date.
-bool Judge::find_why(const std::string& output, const Recipe& recipe, const Inputs& inputs, Stale& stale) {
+bool Judge::find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale) {
     OutputRecord record;
     NamedValues before;
     {
         const std::lock_guard lock(mutex_);
-        const auto found = state_.outputs.find(output);
+        const auto found = state_.outputs.find(task.outputs[stale.index]);
         if (found == state_.outputs.end()) {
             stale.why = "is new";
             return true;
@@ -75,6 +75,11 @@ bool Judge::find_why(const std::string& output, const Recipe& recipe, const Inpu
         stale.changes.insert(stale.changes.end(), files.begin(), files.end());
     }
     if (!stale.changes.empty()) stale.why = words_of(stale.changes);
+    std::vector<std::string> names;
+    for (const auto& [name, digest] : record.files) names.push_back(name);
+    // The state may come from anywhere: it does not say which files an output has.
+    if (stale.why.empty() && !recipe.are_files_of(task.input, stale.index, names))
+        stale.why = "its files are others now";
     for (auto file = record.files.begin(); file != record.files.end() && stale.why.empty(); ++file) {
         const Result<Digest> now = contents_.digest(file->first);
         if (!now) {

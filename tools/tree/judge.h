@@ -57,7 +57,7 @@ public:
 
 private:
     void remember(const PlacedFiles& files);
-    [[nodiscard]] bool find_why(const std::string& output, const Recipe& recipe, const Inputs& inputs, Stale& stale);
+    [[nodiscard]] bool find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale);
 
     std::mutex mutex_;  // guards state_.outputs
     BuildState& state_;

@@ -46,10 +46,11 @@ struct TextureFate {
 
 class Merge {
 public:
-    Merge(const FarmPlan& plan, const BuildOptions& options, const RunOptions& running, Console& console)
-        : plan_(plan), options_(options), running_(running), console_(console), textures_(plan.tasks.size()),
-          contents_(options.root, state_.memos) {
-        if (const auto text = read_text_file(options.state_file)) state_ = BuildState::parse(*text);
+    Merge(const FarmPlan& plan, const std::vector<Recipe>& recipes, const BuildOptions& options,
+          const RunOptions& running, Console& console)
+        : plan_(plan), recipes_(recipes), options_(options), running_(running), console_(console),
+          textures_(plan.tasks.size()), contents_(options.root, state_.memos) {
+        if (const auto text = read_text_file(options.state_file, kMostOfRecord)) state_ = BuildState::parse(*text);
         for (std::size_t k = 0; k < plan.tasks.size(); ++k) {
             index_.emplace(plan.tasks[k].input, k);
             if (!plan.tasks[k].refusal.empty()) textures_[k] = {Fate::failed, false, plan.tasks[k].refusal, {}, {}};
@@ -81,7 +82,10 @@ private:
     [[nodiscard]] ExitCode print();
     void print_texture(const TextureFate& texture, const std::string& input, int shard, std::string& lines);
 
+    [[nodiscard]] bool are_named_by_rule(const BuildTask& task, const ShardRecord& record) const;
+
     const FarmPlan& plan_;
+    const std::vector<Recipe>& recipes_;
     const BuildOptions& options_;
     const RunOptions& running_;
     Console& console_;
@@ -99,7 +103,7 @@ private:
 void Merge::read(const std::string& path) {
     std::error_code ignored;
     if (path != "-" && !std::filesystem::exists(path, ignored)) return;  // its shard has not reported
-    const auto text = read_text_file(path);
+    const auto text = read_text_file(path, kMostOfRecord);
     if (!text) return fail(ExitCode::io, text.error().message());
     ShardReport report;
     try {
@@ -121,6 +125,16 @@ void Merge::read(const std::string& path) {
     for (ShardRecord& record : report.records) take(path, std::move(record));
 }
 
+// Whether the files are those that the manifest gives to the outputs: a report may come from anywhere.
+bool Merge::are_named_by_rule(const BuildTask& task, const ShardRecord& record) const {
+    for (std::size_t k = 0; k < record.outputs.size(); ++k) {
+        std::vector<std::string> names;
+        for (const auto& [name, digest] : record.outputs[k].second.files) names.push_back(name);
+        if (!recipes_[task.recipe].are_files_of(task.input, k, names)) return false;
+    }
+    return true;
+}
+
 void Merge::take(const std::string& path, ShardRecord record) {
     const auto found = index_.find(record.input);
     const std::string input = printable(record.input);
@@ -134,6 +148,9 @@ void Merge::take(const std::string& path, ShardRecord record) {
     }
     std::vector<std::string> outputs;
     for (const auto& [name, made] : record.outputs) outputs.push_back(name);
+    if (outputs == plan_.tasks[found->second].outputs && !are_named_by_rule(plan_.tasks[found->second], record))
+        return fail(ExitCode::data,
+                    fmt::format("{}: {} has files that its rule does not make; the record is not used", path, input));
     if (outputs != plan_.tasks[found->second].outputs)
         return fail(ExitCode::data,
                     fmt::format("{}: {} has other outputs than in the plan; the record is not used", path, input));
@@ -265,9 +282,10 @@ ExitCode Merge::print() {
 
 }  // namespace
 
-ExitCode merge_reports(const FarmPlan& plan, const std::vector<std::string>& reports, const BuildOptions& options,
-                       const RunOptions& running, Console& console) {
-    return Merge(plan, options, running, console).run(reports);
+ExitCode merge_reports(const FarmPlan& plan, const std::vector<Recipe>& recipes,
+                       const std::vector<std::string>& reports, const BuildOptions& options, const RunOptions& running,
+                       Console& console) {
+    return Merge(plan, recipes, options, running, console).run(reports);
 }
 
 }  // namespace tex::cli

@@ -13,6 +13,8 @@ WriteOptions Placement::watched(WriteOptions write) {
 }
 
 Result<void> Placement::accept(const std::string& path, const std::string& complete) {
+    if (!outputs_.contains(path))
+        return Error{ErrorCode::io, path, "is not an output that the manifest names; nothing is replaced"};
     const std::lock_guard lock(mutex_);
     const Result<Digest> digest = digest_of_file(complete);
     if (!digest) return digest.error().of(path);

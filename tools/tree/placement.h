@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // placement.h: the moment in which the outputs of a texture replace the old ones.
 //
-// An output takes its place only if nothing that it is made from has changed since it was read, and if its name still
-// leads to no file that the run reads. What has taken its place is known with its digest, even if the rest fails.
+// An output takes its place only if it is one that the manifest names, if nothing that it is made from has changed
+// since it was read, and if its name still leads to no file that the run reads. What has taken its place is known with
+// its digest, even if the rest fails.
 
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -28,9 +30,10 @@ struct PlacedFile {
 
 class Placement {
 public:
-    // `is_unchanged` says whether what the outputs are made from is as it was when it was read.
-    Placement(const TreeFiles& files, std::function<Result<bool>()> is_unchanged)
-        : files_(files), is_unchanged_(std::move(is_unchanged)) {}
+    // `outputs`: the paths of all files that may take their places, whatever options a command has. `is_unchanged` says
+    // whether what they are made from is as it was when it was read.
+    Placement(const TreeFiles& files, std::set<std::string> outputs, std::function<Result<bool>()> is_unchanged)
+        : files_(files), outputs_(std::move(outputs)), is_unchanged_(std::move(is_unchanged)) {}
 
     // `write` for files of this placement, which must outlive it.
     [[nodiscard]] WriteOptions watched(WriteOptions write);
@@ -45,6 +48,7 @@ private:
     void note(const std::string& path);
 
     const TreeFiles& files_;
+    const std::set<std::string> outputs_;
     const std::function<Result<bool>()> is_unchanged_;
     std::mutex mutex_;
     bool is_accepted_ = false;  // later changes do not count: the outputs go together

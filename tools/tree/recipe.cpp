@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -69,8 +70,19 @@ std::vector<std::string> step_names() {
     return names;
 }
 
+const Command& ProgramPool::table_of(const std::string& step) {
+    std::unique_ptr<Program>& table = tables_[step];
+    const ProgramRow* const row = find_program(step + kSuffix);
+    if (!table) table = row->make(*row);
+    return table->command;
+}
+
+std::shared_ptr<Program>& ProgramPool::program_for(const std::string& step, const std::vector<std::string>& arguments) {
+    return programs_[{step, arguments}];
+}
+
 Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root,
-               Console& console)
+               ProgramPool& pool, Console& console)
     : manifest_(manifest), rule_(rule), number_(number), root_(root) {
     for (const std::string& pattern : rule.match) {
         if (has_grid(pattern)) {
@@ -83,20 +95,24 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
     for (const std::string& pattern : rule.exclude) exclude_.emplace_back(pattern);
     check_ = std::make_unique<TextureCheck>(manifest, rule.check, console);
     for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
-        before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, console));
+        before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, pool, console));
         check_order(rule.steps[k], before_.back(), k, console);
     }
-    for (const OutputSettings& output : rule.outputs) add_output(output, console);
+    for (const OutputSettings& output : rule.outputs) add_output(output, pool, console);
     check_tiles(before_.empty() ? outputs_.front().last : before_.front());
     find_files();
 }
 
-bool Recipe::takes(const std::string& input) const {
+bool Recipe::matches(const std::string& input) const {
     const auto matches = [&](const Glob& glob) { return glob.matches(input); };
     const auto is_tile = [&](const std::string& grid) { return place_in_grid(grid, input).has_value(); };
     const auto end = match_.end() - static_cast<std::ptrdiff_t>(grids_.size());
-    return (std::any_of(match_.begin(), end, matches) || std::any_of(grids_.begin(), grids_.end(), is_tile)) &&
-           std::none_of(exclude_.begin(), exclude_.end(), matches);
+    return std::any_of(match_.begin(), end, matches) || std::any_of(grids_.begin(), grids_.end(), is_tile);
+}
+
+bool Recipe::takes(const std::string& input) const {
+    const auto excludes = [&](const Glob& glob) { return glob.matches(input); };
+    return matches(input) && std::none_of(exclude_.begin(), exclude_.end(), excludes);
 }
 
 void Recipe::check_tiles(const ReadyCommand& first) const {
@@ -167,14 +183,27 @@ std::string_view Recipe::format_between(const std::vector<std::string>& argument
     return name_of(kEncodingNames, any_has ? Encoding::rgba32f : Encoding::float_);
 }
 
+// The program that has read these arguments.
+std::shared_ptr<Program> Recipe::parsed(const StepSettings& step, std::vector<std::string> line, const std::string& out,
+                                        ProgramPool& pool, Console& console) const {
+    std::shared_ptr<Program>& program = pool.program_for(step.command, line);
+    if (program) return program;
+    const ProgramRow* const row = find_program(step.command + kSuffix);
+    std::shared_ptr<Program> made = row->make(*row);
+    line.insert(line.end(), {"-o", out, "--", "input"});
+    std::vector<const char*> pointers;
+    pointers.reserve(line.size());
+    for (const std::string& argument : line) pointers.push_back(argument.c_str());
+    made->command.forbid_answers();
+    std::ignore = made->command.parse(pointers, console);
+    return program = std::move(made);
+}
+
 // `out` is the name of an output; its extension says the file type.
 ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* output, bool is_last, const std::string& out,
-                           Console& console) const {
-    const ProgramRow* row = find_program(step.command + kSuffix);
+                           ProgramPool& pool, Console& console) const {
     ReadyCommand command;
-    command.program = row->make(*row);
-    command.converter = converter_of(*command.program);
-    Command& table = command.program->command;
+    const Command& table = pool.table_of(step.command);
     std::vector<std::string> groups = groups_of(table);
     if (!is_last) std::erase(groups, kOutputGroup);  // of data beside the normals, alpha goes along
     const auto stays_behind = [&](const OptionSetting& setting) {
@@ -188,9 +217,10 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     const bool is_first = outputs_.empty();
     for (const OptionSetting& setting : step.settings) {
         const Row* const row = row_of(table, setting.key, groups);
-        if (row != nullptr && row->writes && !is_first) continue;
-        if (stays_behind(setting) && !setting.is_default)
+        const bool writes = row != nullptr && row->writes;
+        if ((stays_behind(setting) || (writes && !is_last)) && !setting.is_default)
             fail_at(manifest_.path, setting.place, fmt::format("{}: only the last step can have it", setting.key));
+        if (writes && !(is_last && is_first)) continue;
         if (!overrides(setting.key) && !stays_behind(setting)) add_option(setting, table, groups, command.arguments);
     }
     if (output != nullptr) {
@@ -202,10 +232,6 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     std::vector<std::string> line;
     for (const std::string& argument : command.arguments) line.push_back(with_root(argument, table));
     if (!is_last) line.push_back(fmt::format("--format={}", format_between(command.arguments)));
-    line.insert(line.end(), {"-o", out, "--", "input"});
-    std::vector<const char*> pointers;
-    pointers.reserve(line.size());
-    for (const std::string& argument : line) pointers.push_back(argument.c_str());
     const auto place_of = [&](const std::string& subject) {
         for (const auto* settings : {&step.settings, output != nullptr ? &output->settings : nullptr}) {
             if (settings == nullptr) continue;
@@ -215,18 +241,18 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         }
         return output != nullptr && subject == printable(out) ? output->place : step.place;
     };
-    table.forbid_answers();
     try {
-        std::ignore = table.parse(pointers, console);
+        command.program = parsed(step, std::move(line), out, pool, console);
+        command.converter = converter_of(*command.program);
         Task task{before_.empty() ? "input" : kBetween, out};
         task.origin = "input";
         if (has_tile(out) && command.converter->makes_tiles()) task.tile = kAnyTile;
-        task = command.converter->task_for(std::move(task));
-        for (const Row& row : table.rows()) {
-            if (row.writes && !row.given.empty())
-                command.writes.emplace_back(row.name(), NamePattern(row.given.back()));
+        for (const std::string& argument : command.arguments) {
+            const Row* const row = row_of(table, cut(argument, '=').first.substr(2), groups);
+            if (row != nullptr && row->writes) command.writes.push_back(row->name());
         }
-        check_writes(command);
+        task.further = trial_places(command.program->command);
+        task = command.converter->task_for(std::move(task));
         if (const auto checked = command.converter->check_task(task); !checked)
             throw UsageError(checked.error().message());
     } catch (const UsageError& error) {
@@ -254,7 +280,7 @@ void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, 
     if (packed != nullptr && packed->mip && !is_last) fail("builds levels, so it must be the last step");
 }
 
-void Recipe::add_output(const OutputSettings& output, Console& console) {
+void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console& console) {
     std::optional<NamePattern> name;
     std::string out;
     try {
@@ -271,7 +297,7 @@ void Recipe::add_output(const OutputSettings& output, Console& console) {
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     check_folder(*name, out, output.place);
     RecipeOutput made{
-        ready(rule_.steps.back(), &output, true, out, console), std::move(*name), {}, {}, out, {}, output.place};
+        ready(rule_.steps.back(), &output, true, out, pool, console), std::move(*name), {}, {}, out, {}, output.place};
     if (names_engine && made.last.converter->output_for_task().engine == nullptr)
         fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
@@ -338,6 +364,8 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
     }
     std::vector<std::string> lines;
     std::string from = input;
+    std::map<std::string, std::string> further;
+    if (!outputs_[index].last.writes.empty()) std::ignore = files_of(input, index, &further);
     for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
         const bool is_last = k + 1 == rule_.steps.size();
         const ReadyCommand& command = is_last ? outputs_[index].last : before_[k];
@@ -346,11 +374,10 @@ std::vector<std::string> Recipe::command_lines(const std::string& input, std::si
             fmt::format("{} {} -o {}", command.program->command.name(), shell_file(from), shell_file(to));
         for (const std::string& argument : command.arguments) {
             const auto [name, value] = cut(argument, '=');
-            const auto write = std::find_if(command.writes.begin(), command.writes.end(),
-                                            [name = name](const auto& one) { return one.first == name; });
+            const auto file = further.find(name);
             line += fmt::format(" {}", name);
-            if (write != command.writes.end())
-                line += " " + shell_file(below_out_dir(write->second.expand(name_fields(input))));
+            if (is_last && file != further.end())
+                line += " " + shell_file(written_name(file->second));
             else if (argument.size() > name.size())
                 line += " " + shell_word(std::string(value));
         }

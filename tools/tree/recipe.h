@@ -6,7 +6,9 @@
 
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,22 +28,36 @@ namespace tex::cli {
 // The names of steps: "bake" for bake-normals. These are the commands that make an output from each input.
 [[nodiscard]] std::vector<std::string> step_names();
 
+// Commands whose options have been read. Outputs with the same settings share one: its table of options takes 40 KB.
+class ProgramPool {
+public:
+    // The table of a step, to look up options; nothing has been given.
+    [[nodiscard]] const Command& table_of(const std::string& step);
+    // The program that was made for the same step with the same arguments; null if it is to be made.
+    [[nodiscard]] std::shared_ptr<Program>& program_for(const std::string& step,
+                                                        const std::vector<std::string>& arguments);
+
+private:
+    std::map<std::string, std::unique_ptr<Program>> tables_;
+    std::map<std::pair<std::string, std::vector<std::string>>, std::shared_ptr<Program>> programs_;
+};
+
 // A command whose options have been read.
 struct ReadyCommand {
-    std::unique_ptr<Program> program;
-    Converter* converter = nullptr;      // the program
-    std::vector<std::string> arguments;  // the options as the manifest gives them, sorted by name
-    // Those of them that name files to write, such as --height-out, and the patterns of their names.
-    std::vector<std::pair<std::string, NamePattern>> writes = {};
+    std::shared_ptr<Program> program;
+    Converter* converter = nullptr;        // the program
+    std::vector<std::string> arguments;    // the options as the manifest gives them, sorted by name
+    std::vector<std::string> writes = {};  // those of them that name files to write (Row::writes), such as --height-out
 };
 
 // The files of an output, below the root or as paths.
 struct OutputFiles {
-    std::string levels;              // with kLevelMark: there is a file for each level. Or empty
-    std::vector<std::string> files;  // the others: the output itself, maps beside it; for each UDIM tile
+    std::vector<std::string> levels;  // with kLevelMark: there is a file for each level
+    std::vector<std::string> files;   // the others: the output itself, maps beside it; for each UDIM tile
 
     // All that may exist.
     [[nodiscard]] std::vector<std::string> all() const;
+    void add(std::string name) { (has_level(name) ? levels : files).push_back(std::move(name)); }
 };
 
 // One output of a rule.
@@ -59,7 +75,8 @@ class Recipe {
 public:
     // `number` counts the rules from 1. Paths in options are relative to `root`, the folder of the manifest (empty: the
     // working directory). Throws UsageError with the place in the manifest.
-    Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root, Console& console);
+    Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root, ProgramPool& pool,
+           Console& console);
     Recipe(Recipe&&) = default;
     Recipe(const Recipe&) = delete;
     ~Recipe() = default;
@@ -78,13 +95,24 @@ public:
     [[nodiscard]] std::string output_name(const std::string& input, std::size_t output) const;
     // The files of such an output, relative to the root. Those of tiles depend on the mesh, which is read if it has
     // changed. Throws UsageError if one leads out of the root.
-    [[nodiscard]] OutputFiles files_of(const std::string& input, std::size_t output) const;
-    // The tasks that make the output `to` from the file `path`: one, or one for each tile of a mesh. Only for commands
-    // that are no steps; they write each file of files_of(), in this order.
-    [[nodiscard]] std::vector<Task> tasks_of(const std::string& path, std::size_t output, const std::string& to) const;
+    // Adds the file of each option that writes to `further`.
+    [[nodiscard]] OutputFiles files_of(const std::string& input, std::size_t output,
+                                       std::map<std::string, std::string>* further = nullptr) const;
+    // The tasks of the last step that make the output `to` from the file `path`: one, or one for each tile of a mesh.
+    // They write each file of files_of(), in this order.
+    [[nodiscard]] std::vector<Task> tasks_of(const std::string& path, std::size_t output, const std::string& to,
+                                             std::map<std::string, std::string>* further = nullptr) const;
 
     // The task of the first step, with the tiles around `path` if it is a tile of a terrain. `path` leads to the input.
     [[nodiscard]] Task first_task(const Converter& converter, const std::string& path, const std::string& out) const;
+
+    // Whether these are the names of all files of an output: one of each, or one for each level or tile.
+    [[nodiscard]] bool are_files_of(const std::string& input, std::size_t output,
+                                    const std::vector<std::string>& names) const;
+    // The name below out-dir of a file that the rule can make of an input of this name; none if it cannot. Neither need
+    // exist. Both names may come from a file that anybody can write, such as the state.
+    [[nodiscard]] std::optional<std::string> name_below_out_dir(const std::string& input,
+                                                                const std::string& file) const;
 
     [[nodiscard]] const TextureCheck& check() const { return *check_; }
 
@@ -95,9 +123,7 @@ public:
     // the input.
     [[nodiscard]] std::vector<std::string> own_files(const std::string& input, const std::string& path) const;
     // Where a file is whose name is relative to the root.
-    [[nodiscard]] std::string path_to(const std::string& name) const {
-        return root_.empty() ? name : root_ + "/" + name;
-    }
+    [[nodiscard]] std::string path_to(const std::string& name) const;
     // The value that a setting of RecipeOutput::named has if it is not given, in the words of --help; may be empty.
     [[nodiscard]] std::string preset_of(const std::string& name) const;
     // The command lines that do the same, one for each step, for people.
@@ -108,18 +134,26 @@ private:
     static constexpr const char* kBetween = "between.exr";
 
     [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
-                                     const std::string& out, Console& console) const;
-    void check_writes(const ReadyCommand& command) const;
+                                     const std::string& out, ProgramPool& pool, Console& console) const;
+    [[nodiscard]] std::shared_ptr<Program> parsed(const StepSettings& step, std::vector<std::string> line,
+                                                  const std::string& out, ProgramPool& pool, Console& console) const;
+    [[nodiscard]] std::shared_ptr<const FurtherPlaces> trial_places(const Command& table) const;
+    [[nodiscard]] std::shared_ptr<const FurtherPlaces> further_places(const std::string& input,
+                                                                      std::map<std::string, std::string>* names) const;
     [[nodiscard]] std::vector<int> tiles_of(const ReadyCommand& command, const std::string& path,
                                             const std::string& to) const;
     [[nodiscard]] std::string below_out_dir(const std::string& name) const;
+    [[nodiscard]] bool matches(const std::string& input) const;
+    [[nodiscard]] Task task_of(const std::string& path, std::size_t output, const std::string& to, int tile,
+                               std::map<std::string, std::string>* further) const;
+    [[nodiscard]] OutputFiles marked_files_of(const std::string& input, std::size_t output) const;
     [[nodiscard]] std::string_view format_between(const std::vector<std::string>& arguments) const;
     void add_option(const OptionSetting& setting, const Command& command, const std::vector<std::string>& groups,
                     std::vector<std::string>& arguments) const;
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_tiles(const ReadyCommand& first) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
-    void add_output(const OutputSettings& output, Console& console);
+    void add_output(const OutputSettings& output, ProgramPool& pool, Console& console);
     void find_files();
     [[nodiscard]] std::string below_root(const std::string& file) const;
     [[nodiscard]] std::vector<std::string> prerequisites_of(const std::string& path) const;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,14 +13,38 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "files/path_names.h"
+#include "tasks/name_pattern.h"
 #include "tasks/other_parts.h"
 #include "tasks/udim.h"
 #include "tree/recipe.h"
+#include "tree/state.h"
 
 namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The number that stands in a name for the mark of its pattern; 0 if the pattern has none. Nothing if the name is not
+// of the pattern.
+std::optional<int> number_in(const std::string& name, const std::string& pattern) {
+    const std::size_t level = pattern.find(kLevelMark), tile = pattern.find(kTileMark);
+    const std::size_t mark = std::min(level, tile);
+    if (mark == std::string::npos) return name == pattern ? std::optional(0) : std::nullopt;
+    constexpr int kMostDigits = 4;
+    int number = 0;
+    for (std::size_t k = mark; k < name.size() && k < mark + kMostDigits && name[k] >= '0' && name[k] <= '9'; ++k) {
+        number = 10 * number + (name[k] - '0');
+        const std::string tried = mark == level ? with_level(pattern, number) : with_tile(pattern, number);
+        if (tried == name) return number;
+    }
+    return std::nullopt;
+}
+
+// Whether a name is relative and leads neither up nor in circles.
+bool is_plain(const std::string& name) {
+    const fs::path path(name);
+    return !name.empty() && !path.has_root_path() && *path.begin() != ".." && path.lexically_normal() == path;
+}
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -27,7 +53,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 std::vector<std::string> OutputFiles::all() const {
-    std::vector<std::string> names = levels.empty() ? std::vector<std::string>() : with_all_levels(levels);
+    std::vector<std::string> names;
+    for (const std::string& name : levels) {
+        for (std::string& file : with_all_levels(name)) names.push_back(std::move(file));
+    }
     names.insert(names.end(), files.begin(), files.end());
     return names;
 }
@@ -56,16 +85,36 @@ void Recipe::check_folder(const NamePattern& name, const std::string& out, const
     }
 }
 
-// Throws UsageError if a file that options write leads out of the root, whatever the input is called.
-void Recipe::check_writes(const ReadyCommand& command) const {
-    for (const auto& [option, pattern] : command.writes) {
-        const std::string name = pattern.expand({".", "name", ".png", {}});
+// To try whether the options that write fit. The names are errors of the manifest if they are wrong whatever the input
+// is called.
+std::shared_ptr<const FurtherPlaces> Recipe::trial_places(const Command& table) const {
+    FurtherPlaces places;
+    places.input = "name.png";
+    places.path_for = [this, &table](const std::string& option, const std::string& name) {
         const fs::path whole = (fs::path(rule_.out_dir) / fs::path(name).relative_path()).lexically_normal();
-        if (!pattern.uses("dir") && *whole.begin() == "..") {
+        const auto is_its_row = [&](const Row& row) { return row.name() == option; };
+        const auto row = std::find_if(table.rows().begin(), table.rows().end(), is_its_row);
+        if (!NamePattern(row->given.back()).uses("dir") && *whole.begin() == "..") {
             throw UsageError(option,
                              fmt::format("{} leads out of the folder of the manifest", printable(slashed(whole))));
         }
-    }
+        if (check_->is_given() && has_level(name)) throw UsageError(option, "check needs all levels in one file");
+        return slashed(whole);
+    };
+    return std::make_shared<const FurtherPlaces>(std::move(places));
+}
+
+// The files of options that write are below out-dir. Each is added to `names`, unless that is null.
+std::shared_ptr<const FurtherPlaces> Recipe::further_places(const std::string& input,
+                                                            std::map<std::string, std::string>* names) const {
+    FurtherPlaces places;
+    places.input = input;
+    places.path_for = [this, names](const std::string& option, const std::string& name) {
+        const std::string file = below_out_dir(name);
+        if (names != nullptr) (*names)[option] = file;
+        return path_to(file);
+    };
+    return std::make_shared<const FurtherPlaces>(std::move(places));
 }
 
 // The files that options of all steps name for an input.
@@ -131,34 +180,95 @@ std::string Recipe::output_name(const std::string& input, std::size_t index) con
     return below_out_dir(output.name.expand(fields));
 }
 
-std::vector<Task> Recipe::tasks_of(const std::string& path, std::size_t index, const std::string& to) const {
+std::string Recipe::path_to(const std::string& name) const { return path_from(root_, name); }
+
+Task Recipe::task_of(const std::string& path, std::size_t index, const std::string& to, int tile,
+                     std::map<std::string, std::string>* further) const {
     const ReadyCommand& command = outputs_[index].last;
-    std::map<std::string, std::string> places;
-    for (const auto& [option, pattern] : command.writes)
-        places.emplace(option, path_to(below_out_dir(pattern.expand(name_fields(below_root(path))))));
+    Task task{before_.empty() ? path : kBetween, with_tile(to, tile)};
+    if (!before_.empty()) task.origin = path;
+    task.tile = tile;
+    if (!command.writes.empty()) task.further = further_places(below_root(path), further);
+    return command.converter->task_for(std::move(task));
+}
+
+std::vector<Task> Recipe::tasks_of(const std::string& path, std::size_t index, const std::string& to,
+                                   std::map<std::string, std::string>* further) const {
     std::vector<Task> tasks;
-    for (const int tile : tiles_of(command, path, to)) {
-        Task task{path, with_tile(to, tile)};
-        task.tile = tile;
-        task.places = places;
-        tasks.push_back(command.converter->task_for(std::move(task)));
-    }
+    for (const int tile : tiles_of(outputs_[index].last, path, to))
+        tasks.push_back(task_of(path, index, to, tile, further));
     return tasks;
 }
 
-OutputFiles Recipe::files_of(const std::string& input, std::size_t index) const {
+OutputFiles Recipe::files_of(const std::string& input, std::size_t index,
+                             std::map<std::string, std::string>* further) const {
     const std::string name = output_name(input, index);
     OutputFiles files;
     const ReadyCommand& command = outputs_[index].last;
     if (command.writes.empty() && !(has_tile(name) && command.converter->makes_tiles())) {
-        (has_level(name) ? files.levels : files.files.emplace_back()) = name;
+        files.add(name);
         return files;
     }
-    for (const Task& task : tasks_of(path_to(input), index, path_to(name))) {
-        (has_level(task.output) ? files.levels : files.files.emplace_back()) = below_root(task.output);
-        for (const std::string& more : task.more_outputs) files.files.push_back(below_root(more));
+    for (const Task& task : tasks_of(path_to(input), index, path_to(name), further)) {
+        for (const std::string& file : task.outputs()) files.add(below_root(file));
     }
     return files;
+}
+
+// The names of an output's files with {level} and <UDIM> in them: without a look at a mesh.
+OutputFiles Recipe::marked_files_of(const std::string& input, std::size_t index) const {
+    OutputFiles files;
+    const std::string name = output_name(input, index);
+    if (outputs_[index].last.writes.empty()) {
+        files.add(name);
+        return files;
+    }
+    for (const std::string& file : task_of(path_to(input), index, path_to(name), 0, nullptr).outputs())
+        files.add(below_root(file));
+    return files;
+}
+
+bool Recipe::are_files_of(const std::string& input, std::size_t index, const std::vector<std::string>& names) const {
+    const OutputFiles marked = marked_files_of(input, index);
+    std::size_t known = 0;
+    const auto numbers_of = [&](const std::string& pattern) {
+        std::set<int> numbers;
+        for (const std::string& name : names) {
+            if (const std::optional<int> number = number_in(name, pattern)) numbers.insert(*number);
+        }
+        known += numbers.size();
+        return numbers;
+    };
+    for (const std::string& pattern : marked.levels) {
+        const std::set<int> levels = numbers_of(pattern);
+        if (levels.empty() || *levels.rbegin() + 1 != static_cast<int>(levels.size())) return false;
+    }
+    for (const std::string& pattern : marked.files) {
+        if (numbers_of(pattern).empty()) return false;
+    }
+    return known == names.size();
+}
+
+std::optional<std::string> Recipe::name_below_out_dir(const std::string& input, const std::string& file) const {
+    if (!is_plain(input) || !matches(input)) return std::nullopt;
+    std::string folder = slashed(fs::path(rule_.out_dir).lexically_normal());
+    if (folder == ".") folder.clear();
+    if (!folder.empty() && !folder.ends_with('/')) folder += '/';
+    if (!file.starts_with(folder)) return std::nullopt;
+    std::string name = file.substr(folder.size());
+    if (!is_plain(name)) return std::nullopt;
+    for (std::size_t k = 0; k < outputs_.size(); ++k) {
+        try {
+            const OutputFiles marked = marked_files_of(input, k);
+            const auto is_file = [&](const std::string& pattern) { return number_in(file, pattern).has_value(); };
+            if (std::any_of(marked.levels.begin(), marked.levels.end(), is_file) ||
+                std::any_of(marked.files.begin(), marked.files.end(), is_file))
+                return name;
+        } catch (const UsageError&) {
+            // This output of this input leads out of the root, or has no name.
+        }
+    }
+    return std::nullopt;
 }
 
 }  // namespace tex::cli

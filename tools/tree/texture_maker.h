@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ struct Made {
 struct WantedOutput {
     std::size_t index;
     std::string path;
-    std::string write_to = {};  // if not empty, the bytes go here instead
+    std::string write_to = {};                        // if not empty, the bytes go here instead,
+    std::map<std::string, std::string> further = {};  // and those of files of options that write to these places
 };
 
 // Makes `wanted` from the file `input`. The folders exist. Errors: those of the commands.
