@@ -83,7 +83,7 @@ Command::Command(std::string_view name, std::string_view summary) : name_(name),
     // These rows come first because values are taken in the order of the rows. So --help works even if another option
     // is wrong.
     group(kHelpGroup);
-    flag(help_, "-h,--help", "print this help and exit; with --json all options as data");
+    flag(help_, "-h,--help", "print all options and exit, or one screen with -h; with --json, as data");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
     choice_row("--completion", "SHELL", "print a completion script and exit", {{"bash", ""}, {"zsh", ""}, {"fish", ""}},
                [this](const std::string& shell) { completion_ = shell; })
@@ -198,6 +198,7 @@ Result<std::string> Command::sort(Arguments given) {
         }
         auto value = value_of(*row, argument);
         if (!value && ++k == arguments.size()) throw UsageError(fmt::format("{} needs a value", printable(argument)));
+        helps_in_full_ = helps_in_full_ || argument == "--help";
         row->given.push_back(value ? std::move(*value) : arguments[k]);
     }
     return mistake;
@@ -233,7 +234,10 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     } catch (const UsageError&) {
         if (!help_ && !version_) throw;
     }
-    if (help_) return console.print(given("--json") ? help_json(*this) : help_text(*this));
+    if (help_) {
+        if (given("--json")) return console.print(help_json(*this));
+        return console.print(helps_in_full_ ? help_text(*this) : brief_help_text(*this));
+    }
     if (version_) return console.print(given("--json") ? version_json(*this) : version_text(*this));
     if (list_options_) return console.print(option_list(*this));
     if (!completion_.empty()) return console.print(completion_script(*this, completion_));

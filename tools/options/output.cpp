@@ -77,13 +77,16 @@ std::string default_encodings(Encoding of_textures) {
 void OutputOptions::add(Command& command, std::string format_default, std::string y_default,
                         Container standard_output) {
     command.group("Output");
-    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored").preset =
-        std::move(format_default);
+    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored")
+        .often(3, "how normals are stored: dxt5nm, bc5, rgb8 ...")
+        .preset = std::move(format_default);
     command
         .choice(container, "--container", "TYPE", kContainerNames,
                 "the file type, if the output's name does not say it (a pipe)")
         .preset = fmt::format("by extension; {} for -", name_of(kContainerNames, standard_output));
-    command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output").preset = std::move(y_default);
+    command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output")
+        .often(7, "which way green points in the output: up or down")
+        .preset = std::move(y_default);
     command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders search for the smallest error");
     command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");
     add_rdo(command);
@@ -124,7 +127,7 @@ void OutputOptions::add_engines(Command& command) {
                                   else
                                       engines = parse_engines(text);
                               });
-    row.words = engine_words();
+    row.often(5, "what an engine wants: unity, unreal, godot ...").words = engine_words();
     row.completes = Completes::words;
 }
 

@@ -32,6 +32,7 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
         .text(
             output_, "--roughness-out", "FILE",
             "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
+        .often(4, "write a roughness map that suits the levels")
         .completes = Completes::files;
     Row& input =
         command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",

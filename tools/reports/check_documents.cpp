@@ -18,14 +18,18 @@ namespace tex::cli {
 
 void CheckDocuments::add(Command& command) {
     command.group("Documents");
-    const auto add_file = [&](std::string& path, const char* name, const char* help) {
-        command.text(path, name, "FILE", help).completes = Completes::files;
+    const auto add_file = [&](std::string& path, const char* name, const char* help) -> Row& {
+        Row& row = command.text(path, name, "FILE", help);
+        row.completes = Completes::files;
+        return row;
     };
-    add_file(page_path_, "--report", "write a page with the findings and pictures, on which the light can be moved");
+    add_file(page_path_, "--report", "write a page with the findings and pictures, on which the light can be moved")
+        .often(3, "write a page with the findings and pictures");
     add_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
     add_file(junit_, "--junit", "write the findings as JUnit XML");
     command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
-    add_file(baseline_path_, "--baseline", "accept the findings that this file lists");
+    add_file(baseline_path_, "--baseline", "accept the findings that this file lists")
+        .often(3, "accept the findings that this file lists");
     add_file(baseline_written_, "--baseline-write",
              "write such a file with all findings, and do not fail for them; files that cannot be read still fail");
     add_file(depfile_, "--depfile", "write what the documents were made from, for Make and Ninja");

@@ -73,6 +73,7 @@ void CompareDocuments::add(Command& command) {
     command
         .text(heat_map_path_, "--heatmap", "FILE",
               "write a picture of the angles with a legend (of the first level compared)")
+        .often(3, "write a picture of the angles")
         .completes = Completes::files;
     command
         .option("--heatmap-scale", "DEGREES", "the angle at the end of the legend",
@@ -84,6 +85,7 @@ void CompareDocuments::add(Command& command) {
     command
         .text(page_path_, "--report", "FILE",
               "write a page with the figures and pictures of both maps, on which the light can be moved")
+        .often(3, "write a page with both maps under a light")
         .completes = Completes::files;
     command
         .text(depfile_, "--depfile", "FILE", "write what the heat map and the page were made from, for Make and Ninja")

@@ -115,6 +115,7 @@ void TransferReport::add(Command& command) {
     command
         .text(path_, "--report", "FILE",
               "write a page with the map on the low mesh beside the high one, under a light that can be moved")
+        .often(4, "write a page with the map on the low mesh")
         .completes = Completes::files;
     command.check([&command] {
         if (command.given("--report") && command.given("--update"))
