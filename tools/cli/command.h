@@ -159,7 +159,7 @@ private:
                     std::function<void(const std::string& name)> take);
     [[nodiscard]] Result<std::vector<std::string>> arguments_in(const std::string& file);
     [[nodiscard]] Result<std::string> sort(Arguments given);
-    [[nodiscard]] std::string unknown_option(const std::string& name) const;
+    [[nodiscard]] std::string unknown_option(std::string name) const;
     void take_values();
 
     std::string name_;
@@ -183,10 +183,7 @@ private:
     std::string completion_;
 };
 
-// The word for what users also call by other names or in capital letters: "up" for "OpenGL".
-[[nodiscard]] std::string common_word(std::string word);
-
-// The one of `names` that `name` or common_word(name) is. Throws UsageError, which lists the names
+// The one of `names` that `name` or common_word(name) (foreign_words.h) is. Throws UsageError, which lists the names
 // and suggests one.
 [[nodiscard]] std::string known_word(const std::string& name, const std::vector<std::string>& names);
 template <class E, std::size_t N>

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <tex/file.h>
 
+#include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "tasks/other_parts.h"

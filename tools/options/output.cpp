@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
@@ -159,7 +160,8 @@ Container OutputOptions::container_for(const std::string& output, Container stan
     if (zstd != 0 && !can_compress(chosen)) throw UsageError(printable(output), "--supercompress needs a KTX2 file");
     if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm) && !can_hold(chosen, Encoding::astc_4x4))
         throw UsageError(printable(output), "--rdo-mean needs a DDS, KTX2 or ASTC file");
-    if (quality && chosen != Container::jpeg) throw UsageError(printable(output), "--quality needs a JPEG file");
+    if (quality && chosen != Container::jpeg)
+        throw UsageError(printable(output), "--quality needs a JPEG file; of blocks, it is --effort");
     return chosen;
 }
 
@@ -175,11 +177,11 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
     if (named) return *named;
     if (output == "-") return made_container().value_or(standard_output);
     const std::string extension = slashed(std::filesystem::path(output).extension());
-    throw UsageError(printable(output), fmt::format("{}; it must be one of {}, or give --container",
-                                                    extension.empty() ? "a name without an extension"
-                                                                      : fmt::format("unsupported output format '{}'",
-                                                                                    printable(extension)),
-                                                    known_extensions()));
+    const std::string what = extension.empty() ? "a name without an extension"
+                                               : fmt::format("unsupported output format '{}'", printable(extension));
+    throw UsageError(printable(output),
+                     fmt::format("{}; it must be one of {}, or give --container{}", what, known_extensions(),
+                                 extension.empty() ? "" : unwritten_type_answer(extension.substr(1))));
 }
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {
