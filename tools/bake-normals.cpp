@@ -71,9 +71,9 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
     command.example("bake-normals bricks.png -o bricks_nh.png --format rgba8 --alpha height",
                     "Normals and heights in one file, for parallax mapping.");
+    command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --world-size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
-    command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
 }
 
 cli::OutputRules BakeNormals::rules() const {

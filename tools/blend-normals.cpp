@@ -76,17 +76,20 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     wrap_.add(command, "what lies beyond the base's border; two words set x and y separately");
     running.add(command);
     command.example("blend-normals wall.png grain.png -o wall.dds --tiling 8", "Grain on a wall, eight times across.");
+    command.example("blend-normals rock.dds moss.dds -o out.dds --mode rnm --mask moss_mask.png",
+                    "A layer where its mask is white.");
+    command.example("blend-normals walls/*.dds --detail grain.dds --tiling 8 --out-dir out",
+                    "One detail on many bases.");
     command.example(
         "blend-normals rock.dds moss.dds cracks.dds -o out.dds --mode rnm --mask moss.png:a --strength 0.8 "
         "--strength 1",
         "Two layers, one mask for both.");
-    command.example("blend-normals walls/*.dds --detail grain.dds --tiling 8 --out-dir out",
-                    "One detail on many bases.");
 }
 
 void BlendNormals::add_blend() {
     command.group("Blend");
-    command.choice(blend_.mode, "--mode", "M", kBlendModeNames, "how two normals become one");
+    command.choice(blend_.mode, "--mode", "M", kBlendModeNames, "how two normals become one")
+        .often(2, "how two normals become one: whiteout, udn, rnm ...");
     command.number(blend_.base_scale, "--base-scale", "S", range_of(&BlendOptions::base_scale),
                    "make the base steeper or flatter");
     command.choice(blend_.scale_mode, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");

@@ -48,14 +48,19 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.finds_things();
     command.group("Build");
     cli::Row& root = command.text(root_, "--root", "DIR", "the folder that paths of the manifest are relative to");
-    root.completes = cli::Completes::directories;
+    root.often(2, "the folder that paths of the manifest are relative to").completes = cli::Completes::directories;
     root.preset = "the manifest's";
-    command.flag(build_.dry_run, "--dry-run", "print what would be made, and why; write nothing");
+    command.flag(build_.dry_run, "--dry-run", "print what would be made, and why; write nothing")
+        .often(1, "print what would be made, and why; write nothing");
     command.text(explain_, "--explain", "FILE", "print the rule, the settings and the command lines for one file")
+        .often(1, "print the rule, the settings and the command lines")
         .completes = cli::Completes::files;
-    command.flag(watch_, "--watch", "stay, and build what is saved, until interrupted");
-    command.flag(build_.prune, "--prune", "remove outputs that no rule makes any more");
+    command.flag(watch_, "--watch", "stay, and build what is saved, until interrupted")
+        .often(1, "stay, and build what is saved, until interrupted");
+    command.flag(build_.prune, "--prune", "remove outputs that no rule makes any more")
+        .often(1, "remove outputs that no rule makes any more");
     command.text(build_.cache, "--cache", "DIR", "take outputs from this folder if they are there, and put them there")
+        .often(1, "take outputs from this folder, and put them there")
         .completes = cli::Completes::directories;
     command.option("--cache-size", "BYTES", "keep the cache below this size (K, M, G)",
                    [this](const std::string& text) { build_.cache_size = cli::parse_count(text); });
@@ -69,8 +74,8 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     running_.add(command);
     command.example("build-normals", "Reads normals.toml and brings every output up to date.");
     command.example("build-normals --dry-run", "What would be made, and why.");
-    command.example("build-normals --watch --no-sync", "Builds what is saved, while people work.");
     command.example("build-normals art/normals.toml --explain art/wall_h.png", "Everything about one file.");
+    command.example("build-normals --watch --no-sync", "Builds what is saved, while people work.");
     command.check([this] {
         if (command.inputs().size() > 1 && !farm_.merges()) throw cli::UsageError("give one manifest");
         if (watch_ && (build_.dry_run || !explain_.empty()))

@@ -66,16 +66,16 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     });
     files.add_inputs(command, [this] { return reads_nothing(); });
     running.add(command);
-    command.example("check-normals --require format=dxt5nm --require mips=full --require y=up 'art/**/*_n.dds'",
+    command.example("check-normals --require mips=full --require y=up 'art/**/*_n.dds'",
                     "What a build requires of its normal maps.");
-    command.example("check-normals --config checks.toml --sarif findings.sarif --junit findings.xml --files-from list",
-                    "In continuous integration.");
     command.example("check-normals 'art/**/*_n.dds' --report report.html",
                     "A page with pictures, on which the light can be moved.");
-    command.example("check-normals --baseline-write known.json old/*.dds",
-                    "Accepts today's findings; --baseline known.json then reports only new ones.");
     command.example("check-normals bricks_n.png --height bricks_h.png",
                     "Whether a normal map was made from a height map.");
+    command.example("check-normals --config checks.toml --sarif findings.sarif --junit findings.xml --files-from list",
+                    "In continuous integration.");
+    command.example("check-normals --baseline-write known.json old/*.dds",
+                    "Accepts today's findings; --baseline known.json then reports only new ones.");
     command.example("check-normals rock_n.dds --mesh rock.glb --decoder unreal",
                     "Whether a map fits its mesh in an engine.");
     command.example("check-normals 'models/**/*.glb' --report models.html",

@@ -66,7 +66,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
-                    "Fails if more than 1 texel in 1000 moved by over 2 degrees, and shows where.");
+                    "Fails if 1 texel in 1000 moved by over 2 degrees, and shows where.");
     command.example("compare-normals bricks.exr bricks.dds --report loss.html",
                     "A page with both maps under a light that can be moved.");
     command.example("compare-normals mine.png theirs.png --mesh rock.glb",

@@ -76,17 +76,17 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     others.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
-    command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
-                    "A baked object-space map for Unreal.");
     command.example("convert-normals rock_n.png -o rock_obj.exr --mesh rock.glb --to object",
                     "What the map means on the mesh.");
-    command.example("convert-normals rock_n.png -o rock_new.png --mesh rock_v1.glb --to-mesh rock_v2.glb",
+    command.example("convert-normals n.png -o new.png --mesh rock_v1.glb --to-mesh rock_v2.glb",
                     "The tangents changed: makes the map fit again.");
+    command.example("convert-normals model.glb --out-dir out --decoder godot",
+                    "Every normal map that the materials of a model use, each on its mesh.");
+    command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
+                    "A baked object-space map for Unreal.");
     command.example(
         "convert-normals rock_n.png -o rock_ue.png --mesh rock.glb --decoder-in unity-builtin --decoder unreal",
         "From one engine to another.");
-    command.example("convert-normals model.glb --out-dir out --decoder godot",
-                    "Every normal map that the materials of a model use, each on its mesh.");
     command.check([this] {
         if (conversion_.spaces.from == Space::object && normals.measures_y)
             throw cli::UsageError("--y-in measured needs --from tangent");

@@ -76,8 +76,8 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
     maps_.add(command, files);
     running.add(command);
     command.example("integrate-normals rock_n.dds -o rock_h.png --uv-height 0.05", "Heights of 16 bits, 0 to 1.");
-    command.example("integrate-normals rock_n.png -o rock_h.exr --wrap clamp --curvature-out rock_c.png --json",
-                    "Heights as floats for a map that does not tile, its curvature, and figures about both.");
+    command.example("integrate-normals rock_n.png -o rock_h.exr --curvature-out rock_c.png",
+                    "Heights as floats, and the curvature of the surface.");
     command.example("integrate-normals *_n.png --out-dir heights --name '{stem:-_n}_h.png'", "A folder at once.");
     command.check([this] {
         if (strength_.bumpiness == 0.0f || strength_.height_range == 0.0 || strength_.uv_height == 0.0)

@@ -40,7 +40,7 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
     roughness_.add(command, files);
     running.add(command);
     command.example("mip-normals bricks_n.png -o bricks.dds", "A DXT5nm texture with all its levels.");
-    command.example("mip-normals bricks_n.png -o bricks.ktx2 --format bc5 --mip-filter kaiser --fade 2,6",
+    command.example("mip-normals bricks_n.png -o bricks.ktx2 --mip-filter kaiser --fade 2,6",
                     "Sharper levels that fade to flat.");
     command.example("mip-normals rock.png --out-dir levels --name '{stem}_mip{level}{ext}'",
                     "A picture for each level, for tools that put chains together themselves.");

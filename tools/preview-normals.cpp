@@ -69,15 +69,15 @@ PreviewNormals::PreviewNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     normals.warns_of_background = false;
     running.add(command);
     command.example("preview-normals bricks.dds -o bricks.png", "The map under a light from the upper left.");
-    command.example("preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
-                    "On a sphere, with detail blended in.");
     command.example("preview-normals *.dds -o sheet.png --show lit,normals,tilt,curl",
                     "A contact sheet, a row for each map.");
+    command.example("preview-normals before.dds after.dds -o split.png --split --difference",
+                    "Two maps in one picture, and the angles between them.");
+    command.example("preview-normals bricks.dds -o sphere.png --shape sphere --detail grain.dds --detail-tiling 8",
+                    "On a sphere, with detail blended in.");
     command.example(
         "preview-normals rock_n.dds -o relief.png --show height,curvature,lit --parallax auto --parallax-steps 64",
         "The heights that the normals show, the curvature, and the surface with parallax.");
-    command.example("preview-normals before.dds after.dds -o split.png --split --difference",
-                    "Two maps in one picture, and the angles between them.");
     command.example("preview-normals rock_n.dds -o look.png --mesh rock.glb --camera 30,20 --show lit,tangents,seams",
                     "On its mesh, with its tangents and the error along its UV seams.");
     command.example("preview-normals model.glb -o look.png", "A model with its own maps, a picture for each material.");

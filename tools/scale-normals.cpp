@@ -43,6 +43,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command
         .number(scale_, "--scale", "S", range_of(&Scaling::scale),
                 "the factor, required; 0 is flat, negative turns bumps into dents")
+        .often(1, "the factor; 0 is flat, negative turns bumps into dents")
         .preset = "";
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     normals.add(command);
@@ -52,6 +53,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",
                     "Twice as steep, all levels, the same encoding.");
     command.example("scale-normals *.png --out-dir dents --scale -1", "Bumps become dents.");
+    command.example("scale-normals bricks.dds -o soft.dds --scale 0.5 --scale-mode xy", "As a shader scales x and y.");
     command.check([this] {
         if (!command.given("--scale")) throw cli::UsageError("no scale: give --scale S");
     });

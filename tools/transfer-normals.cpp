@@ -81,8 +81,12 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     output.add_engines(command);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
-    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.dds --extent 4096",
+    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.dds --extent 2048",
                     "The high mesh's normals as a DXT5nm texture with all its levels.");
+    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.png --report rock.html",
+                    "A page with the result beside the high mesh, missed texels in red.");
+    command.example("transfer-normals low.glb high.glb -o n.png --occlusion-out ao.png",
+                    "Ambient occlusion beside the map.");
     command.example(
         "transfer-normals crate_low.fbx crate_high.obj -o crate_n.png --rays straight --subsamples 4 "
         "--decoder unreal --y down --height-out crate_h.exr --max-missed 0.1",
@@ -99,8 +103,6 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
         "A scan's base colour and its own fine normals beside its shape.");
     command.example("transfer-normals set_low.glb set_high.glb -o 'set_n.<UDIM>.png' --height-out 'set_h.<UDIM>.exr'",
                     "A map for each UDIM tile that the low mesh uses.");
-    command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.png --report rock.html",
-                    "A page with the result beside the high mesh, missed texels in red.");
     command.example(
         "transfer-normals meshes/*_low.glb --high '{dir}/{stem:-_low}_high.glb' --out-dir out "
         "--name '{stem:-_low}_n.png'",

@@ -46,10 +46,11 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
             if (!all_levels_) level_ = cli::parse_int(text, 0, std::numeric_limits<int>::max());
         });
     option.words = {{"all", "every level, if the output can hold them"}};
-    option.completes = cli::Completes::words;
+    option.often(3, "the level to unpack, from 0, or all").completes = cli::Completes::words;
     option.preset = fmt::format("{}", level_);
-    command.number(scale_, "--scale", "S", range_of(&Scaling::scale),
-                   "make normals steeper or flatter; negative: dents");
+    command
+        .number(scale_, "--scale", "S", range_of(&Scaling::scale), "make normals steeper or flatter; negative: dents")
+        .often(3, "make normals steeper or flatter");
     command.choice(scale_mode_, "--scale-mode", "M", kScaleModeNames, "how they are scaled");
     apart_.add(command, files, normals);
     output.add(command, cli::default_encodings(Encoding::rgb8), "as in the input", Container::png);
@@ -57,10 +58,10 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.example("unpack-normals bricks.dds -o bricks.png", "The base level as a picture, whatever its layout.");
     command.example("unpack-normals bricks.dds -o bricks.exr --scale 0.5 --scale-mode xy",
                     "What a shader gets from UnpackScaleNormal, as floats.");
+    command.example("unpack-normals bricks.ktx2 --level all --name '{stem}_mip{level}.png'", "All levels as pictures.");
     command.example(
         "unpack-normals rock_pbr.png -o rock_n.png --swizzle rg --blue-out rock_ao.png --alpha-out rock_h.png",
         "What a LabPBR texture holds, in three files.");
-    command.example("unpack-normals bricks.ktx2 --level all --name '{stem}_mip{level}.png'", "All levels as pictures.");
 }
 
 Result<void> UnpackNormals::check(const std::vector<cli::Task>& tasks) {

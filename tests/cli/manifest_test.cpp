@@ -97,6 +97,8 @@ TEST(Manifest, MistakesNameTheirPlaceAndTheRemedy) {
     EXPECT_EQ(refusal_of("[ { bke = {} } ]"), "n.toml: line 4, column 13: unknown key 'bke'; did you mean bake?");
     EXPECT_EQ(refusal_of("[ { bake = { bumpines = 2 } } ]"),
               "n.toml: line 4, column 22: bumpines: bake-normals has no such option here; did you mean bumpiness?");
+    EXPECT_EQ(refusal_of("[ { bake = { strength = 2 } } ]"),
+              "n.toml: line 4, column 22: strength: bake-normals has no such option here; here it is bumpiness");
     EXPECT_EQ(refusal_of("[ { bake = { tiles = true } } ]"),
               "n.toml: line 4, column 22: tiles needs {x} and {y} in match, the place of a tile");
     EXPECT_EQ(refusal_of("[ { bake = { kernel = \"sobl\" } } ]").substr(0, 60),

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cli/completion.h"
+#include "cli/foreign_words.h"
 #include "cli/help.h"
 #include "cli/help_json.h"
 #include "cli/text.h"
@@ -18,14 +19,6 @@
 
 namespace tex::cli {
 namespace {
-
-// What other programs call some options.
-constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
-    {"--strength", "--bumpiness"}, {"--intensity", "--bumpiness"}, {"--flip-y", "--y"},
-    {"--flip-green", "--y"},       {"--invert-y", "--y"},          {"--invert-green", "--y"},
-    {"--strength", "--scale"},     {"--flip-y", "--y-in"},         {"--invert-green", "--y-in"},
-    {"--size", "--extent"},        {"--resolution", "--extent"},
-};
 
 template <class Rows>
 auto* find_row(Rows& rows, std::string_view name) {
@@ -59,31 +52,20 @@ std::vector<std::string> names_of(const std::vector<Word>& words) {
     return names;
 }
 
-std::string common_word(std::string word) {
-    static constexpr std::pair<std::string_view, std::string_view> kOtherNames[] = {
-        {"opengl", "up"}, {"gl", "up"},    {"directx", "down"}, {"d3d", "down"},
-        {"dx", "down"},   {"ati2", "bc5"}, {"3dc", "bc5"},      {"bc3nm", "dxt5nm"},
-    };
-    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    for (const auto& [other, name] : kOtherNames) {
-        if (word == other) return std::string(name);
-    }
-    return word;
-}
-
 std::string known_word(const std::string& name, const std::vector<std::string>& names) {
     for (const std::string& word : {name, common_word(name)}) {
         if (std::find(names.begin(), names.end(), word) != names.end()) return word;
     }
-    throw UsageError(
-        fmt::format("must be one of {}, not '{}'{}", join(names), printable(name), did_you_mean(name, names)));
+    const std::string answer = foreign_word_answer(name, names);
+    throw UsageError(fmt::format("must be one of {}, not '{}'{}", join(names), printable(name),
+                                 answer.empty() ? did_you_mean(name, names) : answer));
 }
 
 Command::Command(std::string_view name, std::string_view summary) : name_(name), summary_(summary) {
     // These rows come first because values are taken in the order of the rows. So --help works even if another option
     // is wrong.
     group(kHelpGroup);
-    flag(help_, "-h,--help", "print this help and exit; with --json all options as data");
+    flag(help_, "-h,--help", "print all options and exit, or one screen with -h; with --json, as data");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
     choice_row("--completion", "SHELL", "print a completion script and exit", {{"bash", ""}, {"zsh", ""}, {"fish", ""}},
                [this](const std::string& shell) { completion_ = shell; })
@@ -158,16 +140,21 @@ Row& Command::choice_row(const std::string& names, std::string value, std::strin
     return row;
 }
 
-std::string Command::unknown_option(const std::string& name) const {
+std::string Command::unknown_option(std::string name) const {
+    const bool is_number_in_it =
+        !name.starts_with("--") && name.size() > 2 && name.find_first_not_of("0123456789", 2) == std::string::npos;
+    if (is_number_in_it) name.resize(2);  // -j8
+    std::string text = "unknown option " + printable(name);
+    if (is_foreign_option(name))
+        return text + foreign_option_answer(name, [this](std::string_view option) {
+                   const Row* row = find_row(rows_, option);
+                   return row != nullptr && !row->hidden;
+               });
     std::vector<std::string> names;
     for (const Row& row : rows_) {
         if (!row.hidden) names.insert(names.end(), row.names.begin(), row.names.end());
     }
-    for (const auto& [others, ours] : kOtherNames) {
-        if (others == name && std::find(names.begin(), names.end(), ours) != names.end())
-            return fmt::format("unknown option {}; here it is {}", printable(name), ours);
-    }
-    return fmt::format("unknown option {}{}", printable(name), did_you_mean(name, names));
+    return text + did_you_mean(name, names);
 }
 
 Result<std::vector<std::string>> Command::arguments_in(const std::string& file) {
@@ -212,6 +199,7 @@ Result<std::string> Command::sort(Arguments given) {
         }
         auto value = value_of(*row, argument);
         if (!value && ++k == arguments.size()) throw UsageError(fmt::format("{} needs a value", printable(argument)));
+        helps_in_full_ = helps_in_full_ || argument == "--help";
         row->given.push_back(value ? std::move(*value) : arguments[k]);
     }
     return mistake;
@@ -247,7 +235,10 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     } catch (const UsageError&) {
         if (!help_ && !version_) throw;
     }
-    if (help_) return console.print(given("--json") ? help_json(*this) : help_text(*this));
+    if (help_) {
+        if (given("--json")) return console.print(help_json(*this));
+        return console.print(helps_in_full_ ? help_text(*this) : brief_help_text(*this));
+    }
     if (version_) return console.print(given("--json") ? version_json(*this) : version_text(*this));
     if (list_options_) return console.print(option_list(*this));
     if (!completion_.empty()) return console.print(completion_script(*this, completion_));

@@ -18,6 +18,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tex/types.h>
@@ -59,6 +60,8 @@ struct Row {
     std::vector<Word> words;          // the words that the option accepts
     std::vector<std::string> rivals;  // options ("--size") that are used instead of it: its default then means nothing
     Completes completes = Completes::nothing;
+    int rank = 0;             // among the options that most people use, from 1; 0: it is none of them
+    std::string brief;        // what -h prints of them, as short as a line
     bool hidden = false;      // left out of the help
     bool repeatable = false;  // may be given more than once
     // The value names a file that is written. This is the only list of such options: the manifest makes outputs of
@@ -69,6 +72,12 @@ struct Row {
     std::function<void(const std::string& text)> take;  // called with each value; throws UsageError
 
     [[nodiscard]] const std::string& name() const { return names.back(); }  // the long one
+    // Marks an option that most people use. -h prints those with the least ranks.
+    Row& often(int its_rank, std::string clause) {
+        rank = its_rank;
+        brief = std::move(clause);
+        return *this;
+    }
 };
 
 // The group of --help and similar options, which the help lists last.
@@ -90,6 +99,7 @@ public:
     void usage(std::string line) { usages_.push_back(std::move(line)); }
     // Describes the positional arguments: "HEIGHT...", "height maps; - is standard input".
     void input(std::string value, std::string help) { input_ = {std::move(value), std::move(help)}; }
+    // -h prints the first three, so these are short.
     void example(std::string line, std::string meaning) { examples_.push_back({std::move(line), std::move(meaning)}); }
     void finds_things() { finds_ = true; }  // the command can end with ExitCode::findings
     void group(std::string title) { group_ = std::move(title); }
@@ -154,7 +164,7 @@ private:
                     std::function<void(const std::string& name)> take);
     [[nodiscard]] Result<std::vector<std::string>> arguments_in(const std::string& file);
     [[nodiscard]] Result<std::string> sort(Arguments given);
-    [[nodiscard]] std::string unknown_option(const std::string& name) const;
+    [[nodiscard]] std::string unknown_option(std::string name) const;
     void take_values();
 
     std::string name_;
@@ -170,6 +180,7 @@ private:
     bool has_read_standard_input_ = false;
     std::vector<std::string> argument_files_;
     bool help_ = false;
+    bool helps_in_full_ = false;  // --help, not only -h
     bool version_ = false;
     bool list_options_ = false;
     bool answers_ = true;
@@ -177,10 +188,8 @@ private:
     std::string completion_;
 };
 
-// The word for what users also call by other names or in capital letters: "up" for "OpenGL".
-[[nodiscard]] std::string common_word(std::string word);
-
-// The one of `names` that `name` or common_word(name) is. Throws UsageError, which lists the names and suggests one.
+// The one of `names` that `name` or common_word(name) (foreign_words.h) is. Throws UsageError, which lists the names
+// and suggests one.
 [[nodiscard]] std::string known_word(const std::string& name, const std::vector<std::string>& names);
 template <class E, std::size_t N>
 [[nodiscard]] E parse_word(const std::string& name, const Named<E> (&table)[N]) {

@@ -24,11 +24,14 @@ std::vector<std::string> groups_in_order(const Command& command) {
 }
 
 // "  -o, --output FILE"; rows without a short name are indented to line up.
-std::string left_column(const Row& row) {
+std::string left_column(const Row& row, const std::string& value) {
     std::string left = (row.names.size() > 1 ? "  " : "      ") + join(row.names);
-    if (!row.value.empty()) left += " " + row.value;
+    if (!value.empty()) left += " " + value;
     return left;
 }
+
+// Without what may follow the value: "FILE" of "FILE[:CHANNEL]".
+std::string brief_left(const Row& row) { return left_column(row, row.value.substr(0, row.value.find('['))); }
 
 std::string explanation(const Row& row) {
     std::string text = row.help;
@@ -60,15 +63,52 @@ void add_entry(std::string& out, const std::string& left, const std::string& rig
     }
 }
 
+// "Usage: ..." of the first `most` forms.
+std::string usage_text(const Command& command, std::size_t most) {
+    std::string out;
+    for (std::size_t k = 0; k < std::min(most, command.usages().size()); ++k)
+        out += fmt::format("{}{} [OPTIONS] {}\n", k == 0 ? "Usage: " : "       ", command.name(), command.usages()[k]);
+    return out;
+}
+
+std::string summary_text(const Command& command) { return join(wrapped(command.summary(), kWidth), "\n") + "\n"; }
+
+std::string example_text(const Example& example) {
+    return fmt::format("  {}\n      {}\n", example.line, join(wrapped(example.meaning, kWidth - 6), "\n      "));
+}
+
+// The rows with the least ranks, in the order of the table.
+std::vector<const Row*> most_used(const Command& command) {
+    constexpr std::size_t kMost = 8;
+    std::vector<const Row*> by_rank, rows;
+    for (const Row& row : command.rows()) {
+        if (row.rank != 0) by_rank.push_back(&row);
+    }
+    std::stable_sort(by_rank.begin(), by_rank.end(), [](const Row* a, const Row* b) { return a->rank < b->rank; });
+    if (by_rank.size() > kMost) by_rank.resize(kMost);
+    for (const Row& row : command.rows()) {
+        if (std::find(by_rank.begin(), by_rank.end(), &row) != by_rank.end()) rows.push_back(&row);
+    }
+    return rows;
+}
+
 }  // namespace
 
+std::string brief_help_text(const Command& command) {
+    constexpr std::size_t kForms = 2, kExamples = 3;
+    std::string out = fmt::format("{}\n{}\n", summary_text(command), usage_text(command, kForms));
+    std::size_t column = 0;
+    for (const Row* row : most_used(command)) column = std::max(column, brief_left(*row).size() + 2);
+    for (const Row* row : most_used(command)) out += fmt::format("{:<{}}{}\n", brief_left(*row), column, row->brief);
+    out += "\nExamples:\n";
+    for (std::size_t k = 0; k < std::min(kExamples, command.examples().size()); ++k)
+        out += example_text(command.examples()[k]);
+    out += fmt::format("\n--help lists all options; {}(1) explains them.\n", command.name());
+    return out;
+}
+
 std::string help_text(const Command& command) {
-    std::string out;
-    for (std::size_t k = 0; k < command.usages().size(); ++k) {
-        out += fmt::format("{}{} [OPTIONS] {}\n", k == 0 ? "Usage: " : "       ", command.name(), command.usages()[k]);
-    }
-    out += "\n";
-    for (const std::string& line : wrapped(command.summary(), kWidth)) out += line + "\n";
+    std::string out = fmt::format("{}\n{}", usage_text(command, command.usages().size()), summary_text(command));
     for (const std::string& group : groups_in_order(command)) {
         out += fmt::format("\n{}:\n", group);
         if (group == groups_in_order(command).front())
@@ -76,13 +116,11 @@ std::string help_text(const Command& command) {
         if (group == groups_in_order(command).front())
             add_entry(out, "  @FILE", "more arguments, one a line or separated by NUL; @- is standard input");
         for (const Row& row : command.rows()) {
-            if (row.group == group && !row.hidden) add_entry(out, left_column(row), explanation(row));
+            if (row.group == group && !row.hidden) add_entry(out, left_column(row, row.value), explanation(row));
         }
     }
     out += "\nExamples:\n";
-    for (const Example& example : command.examples()) {
-        out += fmt::format("  {}\n      {}\n", example.line, join(wrapped(example.meaning, kWidth - 6), "\n      "));
-    }
+    for (const Example& example : command.examples()) out += example_text(example);
     out += "\nExit status:\n";
     for (const Named<ExitCode>& row : kExitCodeNames) {
         if (row.value == ExitCode::findings && !command.finds()) continue;

@@ -61,6 +61,24 @@ std::size_t character_length(std::string_view text) {
     return code >= kLeast[length] && code <= 0x10ffff && is_character && !is_format_control(code) ? length : 0;
 }
 
+// The length of what both names begin and end with, in whole pieces: "--mip-" of "--mip-filter" and "--mip-domain".
+std::pair<std::size_t, std::size_t> same_pieces(std::string_view a, std::string_view b) {
+    const std::size_t most = std::min(a.size(), b.size());
+    std::size_t begin = 0, end = 0;
+    for (std::size_t k = 0; k < most && a[k] == b[k]; ++k) begin = a[k] == '-' ? k + 1 : begin;
+    for (std::size_t k = 0; k + begin < most && a[a.size() - 1 - k] == b[b.size() - 1 - k]; ++k)
+        end = a[a.size() - 1 - k] == '-' ? k + 1 : end;
+    return {begin, end};
+}
+
+// Whether one may be a slip for the other: "--y-ni", but not "--ao-out" for "--id-out". Pieces that both have say
+// nothing about that.
+bool is_slip(std::string_view a, std::string_view b, std::size_t distance) {
+    const auto same = same_pieces(a, b);
+    const std::size_t length = std::max(a.size(), b.size()) - same.first - same.second;
+    return 3 * distance <= length || (distance == 1 && length == 2);
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
@@ -68,7 +86,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
     std::size_t best_distance = word.size() + 1;
     for (const std::string& candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);
-        if (distance < best_distance && 3 * distance <= std::max(word.size(), candidate.size())) {
+        if (distance < best_distance && is_slip(word, candidate, distance)) {
             best_distance = distance;
             best = candidate;
         }

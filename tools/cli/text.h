@@ -12,7 +12,8 @@ namespace tex::cli {
 
 // The candidate that `word` was probably meant to be. This is the candidate at the smallest edit distance (insertion,
 // deletion, substitution, transposition of neighbours), if that distance is at most a third of the longer word's
-// length; else a candidate that begins with `word`; else empty.
+// length, where pieces that both words begin or end with ("--mip-") do not count; else a candidate that begins with
+// `word`; else empty.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 // "; did you mean X?" for the nearest candidate, or nothing.

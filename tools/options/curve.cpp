@@ -17,14 +17,16 @@ namespace tex::cli {
 void CurveOptions::add(Command& command) {
     constexpr Range kAngle{0.0, 180.0, false};
     command.group("Curve");
-    command.option("--rdo-means", "LIST",
-                   "pack A with each --rdo-mean in LIST, such as 0,0.1,0.3, and print bytes and angles; 0 is without",
-                   [this](const std::string& text) {
-                       for (const std::string& mean : split(text, ','))
-                           means_.push_back(parse_float(mean, range_of(&RdoOptions::mean)));
-                       if (std::adjacent_find(means_.begin(), means_.end(), std::greater_equal<>()) != means_.end())
-                           throw UsageError("its angles must rise");
-                   });
+    command
+        .option("--rdo-means", "LIST",
+                "pack A with each --rdo-mean in LIST, such as 0,0.1,0.3, and print bytes and angles; 0 is without",
+                [this](const std::string& text) {
+                    for (const std::string& mean : split(text, ','))
+                        means_.push_back(parse_float(mean, range_of(&RdoOptions::mean)));
+                    if (std::adjacent_find(means_.begin(), means_.end(), std::greater_equal<>()) != means_.end())
+                        throw UsageError("its angles must rise");
+                })
+        .often(1, "pack A with each --rdo-mean in LIST, such as 0,0.1,0.3");
     command.choice(format_, "--format", "F", kEncodingNames, "the encoding", can_optimise);
     command.number(rdo_.max, "--rdo-max", "DEG", kAngle, "no texel's angle grows beyond DEG").preset =
         "four times the mean";

@@ -33,10 +33,12 @@ void FileOptions::add(Command& command, bool joins) {
     Row& row = command.output_file(output, "-o,--output",
                                    joins ? "the output, of all inputs together; - is standard output"
                                          : "the output of a single input; - is standard output");
+    row.often(1, joins ? "the output, of all inputs together" : "the output of a single input");
     row.take = [take = row.take](const std::string& text) {  // /dev/stdout and its other names
         take(named_descriptor(text) == kStandardOutput ? "-" : text);
     };
     command.text(out_dir, "--out-dir", "DIR", "the folder for the outputs of many inputs, created if missing")
+        .often(2, "the folder for the outputs of many inputs")
         .completes = Completes::directories;
     command.text(
         name, "--name", "PATTERN",

@@ -54,7 +54,7 @@ void Guides::fill(TransferInputs& inputs) const {
 }
 
 void GuideOptions::add(Command& command) {
-    const auto file = [&](std::string& pattern, const std::string& name, std::string help) {
+    const auto file = [&](std::string& pattern, const std::string& name, std::string help) -> Row& {
         Row& row = command.option(name, "FILE", std::move(help), [&pattern](const std::string& text) {
             if (text.empty() || text == "-") throw UsageError("needs a file");
             if (NamePattern(text).uses("level") || NamePattern(text).uses("format"))
@@ -62,9 +62,11 @@ void GuideOptions::add(Command& command) {
             pattern = text;
         });
         row.completes = Completes::files;
+        return row;
     };
     command.group("Guides");
-    file(cage_, "--cage", "the low mesh pushed outwards, on which rays start; of many inputs a pattern as --high");
+    file(cage_, "--cage", "the low mesh pushed outwards, on which rays start; of many inputs a pattern as --high")
+        .often(2, "the low mesh pushed outwards, on which rays start");
     file(skew_, "--skew",
          "a picture of where rays are straight, white, and where smooth, black; implies --rays straight");
     file(offset_, "--offset", "a picture of factors for --front");

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <tex/file.h>
 
+#include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "fields/bake_fields.h"
@@ -63,6 +64,7 @@ void StrengthOptions::add(Command& command, bool can_measure) {
     command.group("Strength (one of three)");
     const std::string help = "the height of value 1.0 in texels, as a shader measures it; negative: dents";
     const std::vector<std::string> rivals = {"--height-range", "--uv-height"};
+    const std::string brief = "the height of value 1.0 in texels";
     if (can_measure) {
         Row& row = command.option("--bumpiness", "B", help + "; or a word", [this](const std::string& text) {
             measured = text == "auto";
@@ -70,10 +72,10 @@ void StrengthOptions::add(Command& command, bool can_measure) {
         });
         row.words = {{"auto", "what makes the 99th percentile of the slopes 45 degrees; it is printed"}};
         row.preset = fmt::format("as the file states, else {}", bumpiness);
-        row.completes = Completes::words;
+        row.often(1, brief + ", or auto").completes = Completes::words;
         row.rivals = rivals;
     } else {
-        command.number(bumpiness, "--bumpiness", "B", {}, help).rivals = rivals;
+        command.number(bumpiness, "--bumpiness", "B", {}, help).often(1, brief).rivals = rivals;
     }
     command.option("--height-range", "R", "the height of value 1.0 in the unit of --world-size",
                    [this](const std::string& text) { height_range = parse_double(text); });

@@ -34,17 +34,18 @@ void LayerOptions::add(Command& command) {
             if (text.empty()) throw UsageError("needs a value that is not empty");
             details_.push_back(text);
         });
-    detail.completes = Completes::files;
+    detail.often(2, "a detail map; all inputs are then bases").completes = Completes::files;
     detail.repeatable = true;
     command
         .option(
             "--detail-scale", "S", "make the detail steeper or flatter",
             [this](const std::string& text) { scale_.values.push_back(parse_float(text, range_of(&Layer::scale))); })
+        .often(2, "make the detail steeper or flatter")
         .repeatable = true;
     add_placement(command);
     Row& mask = command.option("--mask", "FILE[:CHANNEL]", "a mask for the detail: white shows all of it",
                                [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
-    mask.completes = Completes::files;
+    mask.often(2, "a mask for the detail: white shows all of it").completes = Completes::files;
     mask.repeatable = true;
     command
         .option("--strength", "T", "how much of the detail shows, 0 to 1",
@@ -62,7 +63,7 @@ void LayerOptions::add_placement(Command& command) {
     Row& tiling = command.option(
         "--tiling", "X[,Y]", "how often the detail repeats across the base",
         [this](const std::string& text) { tiling_.values.push_back(parse_pair(text, kTilingRange, true)); });
-    tiling.preset = "1,1";
+    tiling.often(2, "how often the detail repeats across the base").preset = "1,1";
     tiling.repeatable = true;
     Row& offset = command.option(
         "--offset", "X,Y", "move the detail, in its own widths and heights; y is up",

@@ -22,7 +22,7 @@ Format map_format(Container container) {
     return Format::r8_unorm;
 }
 
-void MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
+Row& MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
     name_ = std::move(name);
     command.output_file(pattern_, name_, std::move(help));
@@ -32,6 +32,7 @@ void MapOutput::add(Command& command, const FileOptions& files, std::string name
         if (is_given() && (NamePattern(pattern_).uses("level") || NamePattern(pattern_).uses("format")))
             throw UsageError(name_ + ": {level} and {format} have no meaning here");
     });
+    return row;
 }
 
 std::string MapOutput::path_of(const Task& task) const {

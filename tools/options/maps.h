@@ -19,7 +19,7 @@ namespace tex::cli {
 class MapOutput {
 public:
     // `files` must outlive this. `name`: the option.
-    void add(Command& command, const FileOptions& files, std::string name, std::string help);
+    Row& add(Command& command, const FileOptions& files, std::string name, std::string help);
 
     [[nodiscard]] bool is_given() const { return !pattern_.empty(); }
 

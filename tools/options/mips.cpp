@@ -24,7 +24,7 @@ std::pair<Wrap, Wrap> parse_wraps(const std::string& text) {
 void WrapOptions::add(Command& command, std::string help) {
     Row& row = command.option("--wrap", "W[,W]", std::move(help),
                               [this](const std::string& text) { std::tie(x, y) = parse_wraps(text); });
-    row.words = words_of(kWrapNames);
+    row.often(7, "what lies beyond the border: repeat, clamp or mirror").words = words_of(kWrapNames);
     row.completes = Completes::words;
     row.preset = name_of(kWrapNames, x);
 }
@@ -51,7 +51,8 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
     row.words = {{"all", "down to 1x1"}, {"none", "the base level alone"}};
     if (with_keep) row.words.insert(row.words.begin() + 1, {"keep", "those of the source"});
     row.completes = Completes::words;
-    row.preset = std::move(levels_default);
+    row.often(4, with_keep ? "levels: all, keep, none or a number" : "levels: all, none or a number").preset =
+        std::move(levels_default);
 
     command.number(mip.max_side, "--max-size", "N", 1, kMaxExtent, "leave out levels with a side of more texels")
         .preset = "no limit";

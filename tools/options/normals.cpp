@@ -124,10 +124,13 @@ Row& add_y_in(Command& command, const char* name, std::string help, std::functio
 void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_others) {
     keeps_others_ = keeps_others;
     command.group("Input");
-    add_y_in(command, "--y-in", "which way green points in the input", [this](YIn y) {
-        measures_y = !y.axis;
-        unpack.y_axis = y.axis;
-    }).preset = "as the file says, else up";
+    add_y_in(command, "--y-in", "which way green points in the input",
+             [this](YIn y) {
+                 measures_y = !y.axis;
+                 unpack.y_axis = y.axis;
+             })
+        .often(6, "which way green points in the input: up or down")
+        .preset = "as the file says, else up";
     Row& row =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) {

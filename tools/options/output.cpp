@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
@@ -79,13 +80,16 @@ std::string default_encodings(Encoding of_textures) {
 void OutputOptions::add(Command& command, std::string format_default, std::string y_default,
                         Container standard_output) {
     command.group("Output");
-    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored").preset =
-        std::move(format_default);
+    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored")
+        .often(3, "how normals are stored: dxt5nm, bc5, rgb8 ...")
+        .preset = std::move(format_default);
     command
         .choice(container, "--container", "TYPE", kContainerNames,
                 "the file type, if the output's name does not say it (a pipe)")
         .preset = fmt::format("by extension; {} for -", name_of(kContainerNames, standard_output));
-    command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output").preset = std::move(y_default);
+    command.choice(y, "--y", "AXIS", kYAxisNames, "which way green points in the output")
+        .often(7, "which way green points in the output: up or down")
+        .preset = std::move(y_default);
     command.choice(effort, "--effort", "E", kEffortNames, "how hard block encoders search for the smallest error");
     command.choice(metric, "--metric", "M", kMetricNames, "the error that --effort best minimises; angle implies best");
     add_rdo(command);
@@ -126,7 +130,7 @@ void OutputOptions::add_engines(Command& command) {
                                   else
                                       engines = parse_engines(text);
                               });
-    row.words = engine_words();
+    row.often(5, "what an engine wants: unity, unreal, godot ...").words = engine_words();
     row.completes = Completes::words;
 }
 
@@ -158,7 +162,8 @@ Container OutputOptions::container_for(const std::string& output, Container stan
     if (zstd != 0 && !can_compress(chosen)) throw UsageError(printable(output), "--supercompress needs a KTX2 file");
     if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm) && !can_hold(chosen, Encoding::astc_4x4))
         throw UsageError(printable(output), "--rdo-mean needs a DDS, KTX2 or ASTC file");
-    if (quality && chosen != Container::jpeg) throw UsageError(printable(output), "--quality needs a JPEG file");
+    if (quality && chosen != Container::jpeg)
+        throw UsageError(printable(output), "--quality needs a JPEG file; of blocks, it is --effort");
     return chosen;
 }
 
@@ -174,11 +179,11 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
     if (named) return *named;
     if (output == "-") return made_container().value_or(standard_output);
     const std::string extension = slashed(std::filesystem::path(output).extension());
-    throw UsageError(printable(output), fmt::format("{}; it must be one of {}, or give --container",
-                                                    extension.empty() ? "a name without an extension"
-                                                                      : fmt::format("unsupported output format '{}'",
-                                                                                    printable(extension)),
-                                                    known_extensions()));
+    const std::string what = extension.empty() ? "a name without an extension"
+                                               : fmt::format("unsupported output format '{}'", printable(extension));
+    throw UsageError(printable(output),
+                     fmt::format("{}; it must be one of {}, or give --container{}", what, known_extensions(),
+                                 extension.empty() ? "" : unwritten_type_answer(extension.substr(1))));
 }
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {

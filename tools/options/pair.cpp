@@ -13,24 +13,29 @@ namespace tex::cli {
 void PairOptions::add(Command& command) {
     command.group("What is compared");
     command.choice(y_[0], "--y-a", "Y", kYAxisNames, "which way green points in A, instead of what the file says");
-    command.choice(y_[1], "--y-b", "Y", kYAxisNames, "which way green points in B");
+    command.choice(y_[1], "--y-b", "Y", kYAxisNames, "which way green points in B")
+        .often(1, "which way green points in B: up or down");
     command
         .option("--level", "N", "the level, 0 being the base level, or all that both have",
                 [this](const std::string& text) {
                     all_levels_ = text == "all";
                     if (!all_levels_) level_ = parse_int(text, 0, 31);
                 })
+        .often(2, "the level, from 0, or all")
         .preset = std::to_string(level_);
     command.group("Limits");
-    const auto add_limit = [&](std::optional<double>& limit, const char* name, const char* figure) {
-        command.option(name, "DEGREES", fmt::format("fail (exit 1) if the {} is greater", figure),
-                       [&limit](const std::string& text) {
-                           limit = parse_double(text, {0.0, 180.0});
-                       });
+    const auto add_limit = [&](std::optional<double>& limit, const char* name, const char* figure, int rank) {
+        std::string help = fmt::format("fail (exit 1) if the {} is greater", figure);
+        command
+            .option(name, "DEGREES", help,
+                    [&limit](const std::string& text) {
+                        limit = parse_double(text, {0.0, 180.0});
+                    })
+            .often(rank, help);
     };
-    add_limit(max_mean_, "--max-mean", "mean");
-    add_limit(max_p999_, "--max-p999", "99.9th percentile");
-    add_limit(max_, "--max", "largest angle");
+    add_limit(max_mean_, "--max-mean", "mean", 2);
+    add_limit(max_p999_, "--max-p999", "99.9th percentile", 6);
+    add_limit(max_, "--max", "largest angle", 2);
 }
 
 Result<Texture> PairOptions::read(const std::string& path, int which, const ReadOptions& read, Console& console,

@@ -29,13 +29,14 @@ Reach parse_reach(const std::string& text) {
     return {Reach::Unit::absolute, parse_double(text, kNotNegative)};
 }
 
-void add_reach(Command& command, Reach& reach, const std::string& name, std::string help, std::string automatic,
+Row& add_reach(Command& command, Reach& reach, const std::string& name, std::string help, std::string automatic,
                std::string preset) {
     Row& row = command.option(name, "DISTANCE", std::move(help),
                               [&reach](const std::string& text) { reach = parse_reach(text); });
     row.words = {{"auto", std::move(automatic)}};
     row.completes = Completes::words;
     row.preset = std::move(preset);
+    return row;
 }
 
 double percent_of(std::int64_t part, std::int64_t whole) {
@@ -63,6 +64,7 @@ void RayOptions::add(Command& command) {
                 [this](const std::string& text) {
                     std::tie(extent_.width, extent_.height) = parse_pair_of_sides(text, kMaxExtent / kMaxSubsamples);
                 })
+        .often(1, "the width and height of the map in texels")
         .preset = fmt::format("{}", extent_.width);
     command
         .option("--subsamples", "N", "rays of a texel: N by N",
@@ -73,8 +75,10 @@ void RayOptions::add(Command& command) {
     command.choice(transfer_.rays, "--rays", "R", kRayModeNames, "the directions of rays");
     add_reach(command, transfer_.front, "--front",
               "how far rays reach outside of the low mesh: a length in its unit, percent of its diagonal, or the word",
-              "found from both meshes", "auto");
-    add_reach(command, transfer_.back, "--back", "the same inside of the low mesh", "found from both meshes", "auto");
+              "found from both meshes", "auto")
+        .often(2, "how far rays reach out of the low mesh: 2% or auto");
+    add_reach(command, transfer_.back, "--back", "the same inside of the low mesh", "found from both meshes", "auto")
+        .often(2, "the same inside of the low mesh");
     command.choice(transfer_.hit, "--hit", "H", kHitChoiceNames, "which point counts if a ray meets several");
     command.flag(transfer_.backfaces, "--backfaces", "let triangles of the high mesh count that are seen from behind");
     command
@@ -227,7 +231,8 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     heights_.add(command, files, "--height-out",
                  "write the heights: lengths as floats, or from 0 to 1, with the range reported");
     positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
-    occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed");
+    occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed")
+        .often(2, "write ambient occlusion");
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open, in tangent space");
     thickness_.add(command, files, "--thickness-out", "write the mean thickness of the high mesh, stored as heights");
     color_.add(command, files, "--color-out", "write the colours that --high-color names");

@@ -30,9 +30,11 @@ Container container_for(const std::string& path) {
 void RoughnessOptions::add(Command& command, const FileOptions& files) {
     files_ = &files;
     command.group("Roughness");
-    command.output_file(
-        output_, kOption,
-        "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name");
+    command
+        .output_file(
+            output_, kOption,
+            "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
+        .often(4, "write a roughness map that suits the levels");
     Row& input =
         command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",
                        [this](const std::string& text) { take_input(text); });

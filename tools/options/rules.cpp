@@ -44,6 +44,7 @@ void RuleOptions::add(Command& command) {
                     require(given_.require, text);
                     required_.push_back(text);
                 })
+        .often(1, "demand format=bc5, mips=full, y=up ... of every file")
         .repeatable = true;
     Row& row = command.option("--for", "ENGINE", "demand what an engine reads, and its direction of green",
                               [this](const std::string& text) {
@@ -51,7 +52,7 @@ void RuleOptions::add(Command& command) {
                                   if (chosen.size() != 1) throw UsageError("a file is checked for one engine");
                                   engine_ = chosen.front();
                               });
-    row.words = engine_words();
+    row.often(1, "demand what an engine reads: unity, unreal, godot ...").words = engine_words();
     row.words.pop_back();  // list
     row.completes = Completes::words;
     const auto name_into = [](std::vector<std::string>& names) {
@@ -63,7 +64,9 @@ void RuleOptions::add(Command& command) {
     add_length_in(command, length_in_);
     command.option("--enable", "ID", "check a rule (id or name) that is off by default", name_into(given_.enable))
         .repeatable = true;
-    command.option("--disable", "ID", "do not check a rule", name_into(given_.disable)).repeatable = true;
+    command.option("--disable", "ID", "do not check a rule", name_into(given_.disable))
+        .often(1, "do not check a rule")
+        .repeatable = true;
     command
         .option("--severity", "ID=SEVERITY", "make a rule an error, a warning or a note",
                 [this](const std::string& text) {
@@ -72,10 +75,13 @@ void RuleOptions::add(Command& command) {
                     given_.severity.emplace_back(name, parse_word(severity, kSeverityNames));
                 })
         .repeatable = true;
-    command.text(config_, "--config", "FILE", "read requirements, rules and severities from a TOML file").completes =
-        Completes::files;
-    command.choice(least_failing_, "--fail-on", "SEVERITY", kSeverityNames,
-                   "the lowest severity that makes the command fail (exit 1)");
+    command.text(config_, "--config", "FILE", "read requirements, rules and severities from a TOML file")
+        .often(1, "read requirements and rules from a TOML file")
+        .completes = Completes::files;
+    command
+        .choice(least_failing_, "--fail-on", "SEVERITY", kSeverityNames,
+                "the lowest severity that makes the command fail (exit 1)")
+        .often(1, "what makes the command fail: error, warning or note");
     command
         .text(height_file_, "--height", "FILE",
               "the height map that the (single) input was made from: check that it matches")

@@ -7,8 +7,10 @@ namespace tex::cli {
 void RunOptions::add(Command& command) {
     command.group("Running");
     command.number(threads, "--threads", "N", 0, 1024, "the most threads at once").preset = "0, one for each processor";
-    command.flag(json, "--json", "print the results on standard output, one JSON object a line for each file");
-    command.flag(quiet, "--quiet", "no warnings and no progress; errors are always printed");
+    command.flag(json, "--json", "print the results on standard output, one JSON object a line for each file")
+        .often(8, "print the results as JSON");
+    command.flag(quiet, "--quiet", "no warnings and no progress; errors are always printed")
+        .often(9, "no warnings and no progress");
     command.choice(progress, "--progress", "WHEN", kShowProgressNames, "show a progress bar");
     const auto count = [](auto& target) { return [&target](const std::string& text) { target = parse_count(text); }; };
     command.option("--max-texels", "N", "refuse files of more texels (K, M, G: powers of 1024)", count(read.max_texels))

@@ -104,7 +104,8 @@ void SceneOptions::add_shape(Command& command) {
             tiles.find('x') == std::string::npos ? preview.tiles_x : parse_int(y, range_of(&PreviewOptions::tiles_y));
     });
     row.words = words_of(kShapeNames);
-    row.words.push_back({"tiled:NxM", "a plane of N by M tiles"});
+    row.often(3, "what the map is put on: plane, sphere, cube, tiled:2x2")
+        .words.push_back({"tiled:NxM", "a plane of N by M tiles"});
     row.preset = name_of(kShapeNames, preview.shape);
     command.flag(preview.mirror, "--mirror", "mirrored UVs: u runs from right to left");
     command
@@ -135,6 +136,7 @@ void SceneOptions::add_light(Command& command) {
                     light.y = v[1];
                     light.z = v[2];
                 })
+        .often(3, "the direction to the light; y up, z to the viewer")
         .preset = fmt::format("{},{},{}", light.x, light.y, light.z);
     command.choice(light.kind, "--light-kind", "KIND", kLightKindNames, "which type of light");
     add_color(command, light.color, "--light-color", "its colour");

@@ -36,7 +36,7 @@ void SheetOptions::add_shows(Command& command) {
             shows_.clear();
             for (const std::string& word : split(text, ',')) shows_.push_back(parse_word(word, kShowNames));
         });
-    row.words = words_of(kShowNames);
+    row.often(3, "lit, normals, tilt, curl, height ...").words = words_of(kShowNames);
     row.completes = Completes::words;
     row.preset = "lit";
 }
@@ -48,10 +48,12 @@ void SheetOptions::add(Command& command, SceneOptions& scene) {
     command
         .option("--size", "N|WxH", "pixels of a picture's longer side, or both",
                 [&scene](const std::string& text) { scene.preview.size = parse_picture_size(text); })
+        .often(3, "pixels of a picture's longer side, or both")
         .preset = fmt::format("the map's own, up to 1024; 512 for sphere, cube and mesh; {} on sheets", kPanelSize);
     command.number(columns_, "--columns", "N", 0, 1000, "pictures in a row of a sheet").preset =
         "the number of --show, else as many as rows";
-    command.flag(split_, "--split", "two maps: the left half of one picture and the right half of the other");
+    command.flag(split_, "--split", "two maps: the left half of one picture and the right half of the other")
+        .often(4, "two maps, half of each");
     command.flag(difference_, "--difference", "two maps of one size: the angles between them, in false colours");
     command
         .number(turntable_, "--turntable", "N", 0, 1000,

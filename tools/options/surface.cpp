@@ -36,8 +36,9 @@ void StoredHeights::add(Command& command) {
                  {"raw", "the lowest becomes 0; the strength alone sets the rest"}};
     row.completes = Completes::words;
     row.preset = "fit for integers, raw for floats";
-    command.choice(format, "--format", "F", kHeightFormatNames, "how heights are stored").preset =
-        "float in exr; r8 in tga, bmp, jpeg; else r16";
+    command.choice(format, "--format", "F", kHeightFormatNames, "how heights are stored")
+        .often(3, "how heights are stored: r16, r8, float ...")
+        .preset = "float in exr; r8 in tga, bmp, jpeg; else r16";
 }
 
 void StoredHeights::parse(const std::string& text) {
@@ -71,8 +72,10 @@ StoredHeights::Span StoredHeights::span_of(const std::vector<Integration>& level
 
 void SurfaceMaps::add(Command& command, const FileOptions& files) {
     command.group("Maps of the surface");
-    curvature_.add(command, files, "--curvature-out",
-                   "write the curvature, around 0.5 or as floats; of many inputs a pattern as --name");
+    curvature_
+        .add(command, files, "--curvature-out",
+             "write the curvature, around 0.5 or as floats; of many inputs a pattern as --name")
+        .often(2, "write the curvature of the surface");
     command.choice(kind_, "--curvature", "KIND", kCurvatureKindNames, "which curvature");
     command
         .option("--curvature-range", "C", "the curvature, in 1/texel, that becomes white in pictures",

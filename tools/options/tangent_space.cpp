@@ -41,11 +41,14 @@ void TangentSpaceOptions::add(Command& command) {
     converts_ = true;
     add_mesh(command, "the mesh that the map is on: glTF, GLB, OBJ, FBX, PLY ...; required, but for models");
     command.text(to_mesh_, "--to-mesh", "FILE", "another version of the mesh, with the same UVs, which the output fits")
+        .often(2, "another version of the mesh, which the output fits")
         .completes = Completes::files;
     add_parts(command, kNodeOfMap);
     command.group("Spaces");
-    command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the input's vectors");
-    command.choice(to, "--to", "SPACE", kSpaceNames, "the space of the output's vectors");
+    command.choice(from, "--from", "SPACE", kSpaceNames, "the space of the input's vectors")
+        .often(2, "the space of the input's vectors: tangent or object");
+    command.choice(to, "--to", "SPACE", kSpaceNames, "the space of the output's vectors")
+        .often(2, "the space of the output's vectors: tangent or object");
     add_decoder(command, "the engine that decodes the tangent-space map");
     command.choice(decoder_in_, "--decoder-in", "D", kDecoderNames, "the decoder that the input was made for").preset =
         "as --decoder";
@@ -123,11 +126,14 @@ void TangentSpaceOptions::add_low(Command& command) {
 
 void TangentSpaceOptions::add_mesh(Command& command, const char* meaning) {
     command.group("Mesh");
-    command.text(mesh_, "--mesh", "FILE", meaning).completes = Completes::files;
+    command.text(mesh_, "--mesh", "FILE", meaning)
+        .often(2, "the mesh that the map is on: glTF, GLB, OBJ, FBX ...")
+        .completes = Completes::files;
 }
 
 void TangentSpaceOptions::add_decoder(Command& command, const char* meaning) {
-    command.choice(decoder_, "--decoder", "D", kDecoderNames, meaning);
+    command.choice(decoder_, "--decoder", "D", kDecoderNames, meaning)
+        .often(4, "the engine that decodes the map: unreal, godot, three ...");
 }
 
 void TangentSpaceOptions::add_tangents(Command& command) {

@@ -18,13 +18,16 @@ namespace tex::cli {
 
 void CheckDocuments::add(Command& command) {
     command.group("Documents");
-    command.output_file(page_path_, "--report",
-                        "write a page with the findings and pictures, on which the light can be moved");
+    command
+        .output_file(page_path_, "--report",
+                     "write a page with the findings and pictures, on which the light can be moved")
+        .often(3, "write a page with the findings and pictures");
     command.output_file(sarif_, "--sarif", "write the findings as SARIF 2.1.0");
     command.output_file(junit_, "--junit", "write the findings as JUnit XML");
     command.flag(is_for_github_, "--github", "print the findings as GitHub's workflow commands: annotations");
-    command.text(baseline_path_, "--baseline", "FILE", "accept the findings that this file lists").completes =
-        Completes::files;
+    command.text(baseline_path_, "--baseline", "FILE", "accept the findings that this file lists")
+        .often(3, "accept the findings that this file lists")
+        .completes = Completes::files;
     command.output_file(
         baseline_written_, "--baseline-write",
         "write such a file with all findings, and do not fail for them; files that cannot be read still fail");

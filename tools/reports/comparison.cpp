@@ -70,8 +70,10 @@ ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& 
 
 void CompareDocuments::add(Command& command) {
     command.group("Heat map");
-    command.output_file(heat_map_path_, "--heatmap",
-                        "write a picture of the angles with a legend (of the first level compared)");
+    command
+        .output_file(heat_map_path_, "--heatmap",
+                     "write a picture of the angles with a legend (of the first level compared)")
+        .often(3, "write a picture of the angles");
     command
         .option("--heatmap-scale", "DEGREES", "the angle at the end of the legend",
                 [this](const std::string& text) {
@@ -79,8 +81,10 @@ void CompareDocuments::add(Command& command) {
                 })
         .preset = "the largest angle";
     command.group("Report");
-    command.output_file(page_path_, "--report",
-                        "write a page with the figures and pictures of both maps, on which the light can be moved");
+    command
+        .output_file(page_path_, "--report",
+                     "write a page with the figures and pictures of both maps, on which the light can be moved")
+        .often(3, "write a page with both maps under a light");
     command.output_file(depfile_, "--depfile",
                         "write what the heat map and the page were made from, for Make and Ninja");
 }

@@ -112,9 +112,10 @@ std::string map_for_shell(const Task& task) {
 TransferReport::TransferReport() : page_("transfer-normals", {"missed", "low", "high", "extent", "format"}) {}
 
 void TransferReport::add(Command& command) {
-    command.output_file(
-        path_, "--report",
-        "write a page with the map on the low mesh beside the high one, under a light that can be moved");
+    command
+        .output_file(path_, "--report",
+                     "write a page with the map on the low mesh beside the high one, under a light that can be moved")
+        .often(4, "write a page with the map on the low mesh");
     command.check([&command] {
         if (command.given("--report") && command.given("--update"))
             throw UsageError("--report and --update contradict each other: what is skipped is not in the page");

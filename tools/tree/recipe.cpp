@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "tasks/udim.h"
@@ -45,6 +47,16 @@ std::vector<std::string> groups_of(const Command& command) {
         if (row.group != kHelpGroup && row.group != "Files" && row.group != "Running") groups.push_back(row.group);
     }
     return groups;
+}
+
+// What an unknown key was probably meant to be.
+std::string key_advice(const std::string& key, const std::vector<std::string>& known) {
+    if (!is_foreign_option("--" + key)) return did_you_mean(key, known);
+    std::string answer = foreign_option_answer("--" + key, [&known](std::string_view option) {
+        return std::find(known.begin(), known.end(), option.substr(2)) != known.end();
+    });
+    for (std::size_t at = answer.find("--"); at != std::string::npos; at = answer.find("--")) answer.erase(at, 2);
+    return answer;
 }
 
 bool names_a_file(const Row& row) { return row.completes == Completes::files; }
@@ -148,7 +160,7 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
         for (const Row& other : command.rows()) {
             if (row_of(command, other.name().substr(2), groups) == &other) known.push_back(other.name().substr(2));
         }
-        fail(fmt::format("{} has no such option here{}", command.name(), did_you_mean(setting.key, known)));
+        fail(fmt::format("{} has no such option here{}", command.name(), key_advice(setting.key, known)));
     }
     if (row->value.empty() != setting.is_flag) fail(row->value.empty() ? "must be true or false" : "needs a value");
     if (setting.is_flag) {

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cli/foreign_words.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "cli/value.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr ForeignOption kForeignOptions[] = {
+    {"--strength --intensity --amount --scale --height-scale --normal-strength", "--bumpiness"},
+    {"--strength --intensity --scale --normal-strength", "--bump-scale"},
+    {"--strength --intensity --amount --factor --normal-strength", "--scale"},
+    {"--strength --intensity --scale --normal-strength", "scale-normals --scale"},
+    {"--size --resize --resolution --res --dimensions", "--extent"},
+    {"--size --resize --resolution --res --dimensions", "--max-size, which leaves out larger levels"},
+    {"--resize --resolution --res --dimensions", "--size"},
+    {"--ext --extension --file-type -ft", "--container, or the extension of the output"},
+    {"--suffix --prefix --postfix -sx -px", "--name, such as '{stem}_n.dds'"},
+    {"--out --outfile --dst", "--output"},
+    {"--output-dir --outdir --output-folder --out-folder --dest", "--out-dir"},
+    {"-i --input --infile", "inputs are named without an option"},
+    {"-r -R --recursive --recurse", "--files-from, or a pattern such as 'art/**/*.png'"},
+    {"-v --verbose", "--version, or --json for all that is known"},
+    {"-V", "--version"},
+    {"-q -s --silent --no-warnings", "--quiet"},
+    {"-j -t --jobs --parallel --cores --nthreads --num-threads", "--threads"},
+    {"-y --force --overwrite", "files are replaced anyway; --no-clobber keeps them"},
+    {"-f -fd -F --fmt --codec --encoder --compress --compression --pixel-format --encode", "--format"},
+    {"-f --format --reporter", "--json, --sarif, --junit or --github"},
+    {"-m --mipmap --mipmaps --genmipmap --generate-mipmaps --miplevels -miplevels --levels", "--mips"},
+    {"-nomips -nomipmap --nomips --no-mips --no-mipmaps", "--mips none"},
+    {"--filter", "--kernel for slopes, --mip-filter for levels"},
+    {"--filter -mipfilter --mipmap-filter", "--mip-filter"},
+    {"--filter", "--kernel"},
+    {"--tile --tileable --seamless --repeat --wrap-mode -wrap", "--wrap"},
+    {"-clamp --clamp", "--wrap clamp"},
+    {"--margin --dilation --dilate --bleed --gutter --edge-padding", "--padding"},
+    {"--extrusion --cage-extrusion --ray-distance --max-distance --max-ray-distance", "--front and --back"},
+    {"--cage-mesh --cage-file", "--cage"},
+    {"--samples --aa --antialiasing --supersampling --oversampling", "--subsamples"},
+    {"--ao-samples --occlusion-samples --secondary-rays", "--rays-per-hit"},
+    {"--ao --ao-out --occlusion --ambient-occlusion", "--occlusion-out"},
+    {"--ao --occlusion --ambient-occlusion", "--blue, which takes a file"},
+    {"--displacement --displacement-out --disp", "--height-out"},
+    {"--bent --bent-normal --bent-normals", "--bent-out"},
+    {"--id --id-map", "--id-out"},
+    {"--gamma --srgb --colorspace --oetf --assign_oetf --assign-oetf", "--color-space, of heights"},
+    {"--gamma --srgb --colorspace --color-space --oetf --assign_oetf --assign-oetf",
+     "normals are not colours, and are never converted"},
+    {"-highest -production --high-quality --slow", "--effort best"},
+    {"-fast --fast", "--effort fast"},
+    {"--flip-y --flip-green --invert-y --invert-green --flip-g -inverty", "--y"},
+    {"--flip-y --flip-green --invert-y --invert-green --flip-g", "--y-in"},
+    {"--flip-y --flip-green --invert-y --invert-green --flip-g", "--y-b"},
+    {"--gl --ogl --opengl", "--y up"},
+    {"--dx --d3d --directx", "--y down"},
+    {"--gl --ogl --opengl --y --y-in", "--require y=up"},
+    {"--dx --d3d --directx", "--require y=down"},
+    {"--zcmp --zstd", "--supercompress zstd"},
+    {"--rdo --lambda --rdo-lambda --uastc_rdo_l", "--rdo-mean"},
+    {"--threshold --tolerance --epsilon", "--max-mean"},
+    {"--diff --diff-out", "--heatmap"},
+    {"--html", "--report"},
+    {"--rules --list-rules", "--list"},
+    {"--ignore --skip", "--disable"},
+    {"--select", "--enable"},
+    {"--strict --max-warnings", "--fail-on"},
+    {"-n --dryrun --just-print", "--dry-run"},
+    {"-C --directory", "--root"},
+    {"--clean", "--prune, for what no rule makes any more"},
+    // Known, and only some commands have it: nothing that is merely spelt like it is suggested.
+    {"--quality --normalize --normalise", ""},
+};
+
+constexpr ForeignWord kForeignWords[] = {
+    {"opengl gl ogl", "up", true},
+    {"directx d3d dx", "down", true},
+    {"ati2 ati2n 3dc", "bc5", true},
+    {"bc3nm bc3n", "dxt5nm", true},
+    {"dxt5 bc3 bc3_unorm dxt5n", "dxt5nm", false},
+    {"bc5_unorm bc5u bc5n rgtc2 latc2 bc7 bc7_unorm", "bc5", false},
+    {"bc5_snorm bc5s", "bc5-snorm", false},
+    {"eac etc2 etc2-rg eac_rg11 rg11", "eac-rg11", false},
+    {"astc astc_4x4 astc4x4", "astc-4x4", false},
+    {"astc_6x6 astc6x6", "astc-6x6", false},
+    {"astc_8x8 astc8x8", "astc-8x8", false},
+    {"rgb rgb24 rgb888 r8g8b8", "rgb8", false},
+    {"rgba rgba32 rgba8888 r8g8b8a8", "rgba8", false},
+    {"rgb48 r16g16b16", "rgb16", false},
+    {"float32 fp32", "float", false},
+    {"float16 fp16", "half", false},
+    {"jpg", "jpeg", false},
+    {"tif", "tiff", false},
+    {"ktx", "ktx2", false},
+    {"ue ue4 ue5 unreal4 unreal5", "unreal", false},
+    {"threejs three.js", "three", false},
+};
+
+constexpr UnwrittenType kUnwrittenTypes[] = {
+    {"webp", "cwebp -lossless -exact n.png -o n.webp"},
+    {"avif", "avifenc --lossless n.png n.avif"},
+    {"uastc", "basisu -ktx2 -uastc -normal_map n.png"},
+    {"etc1s basis", "basisu -ktx2 -normal_map n.png"},
+};
+
+bool has_name(std::string_view names, std::string_view name) {
+    const std::vector<std::string> all = split(names, ' ');
+    return std::find(all.begin(), all.end(), name) != all.end();
+}
+
+std::string small_letters(std::string_view word) {
+    std::string text(word);
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
+// Whether the command has every option of an answer. Those behind the name of another command are that one's.
+bool applies(std::string_view answer, const std::function<bool(std::string_view option)>& has) {
+    if (answer.empty() || answer.find("-normals ") != std::string_view::npos) return !answer.empty();
+    for (const std::string& word : split(answer, ' ')) {
+        const std::string option = word.substr(0, word.find_last_not_of(",;") + 1);
+        if (option.starts_with("--") && !has(option)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::span<const ForeignOption> foreign_options() { return kForeignOptions; }
+std::span<const ForeignWord> foreign_words() { return kForeignWords; }
+std::span<const UnwrittenType> unwritten_types() { return kUnwrittenTypes; }
+
+bool is_foreign_option(std::string_view name) {
+    return std::any_of(std::begin(kForeignOptions), std::end(kForeignOptions),
+                       [name](const ForeignOption& row) { return has_name(row.names, name); });
+}
+
+std::string foreign_option_answer(std::string_view name, const std::function<bool(std::string_view option)>& has) {
+    for (const ForeignOption& row : kForeignOptions) {
+        if (!has_name(row.names, name) || !applies(row.answer, has)) continue;
+        const bool is_clause =
+            row.answer.find("--") == std::string_view::npos || row.answer.find("; ") != std::string_view::npos;
+        return fmt::format("; {}{}", is_clause ? "" : "here it is ", row.answer);
+    }
+    return {};
+}
+
+std::string foreign_word_answer(std::string_view name, const std::vector<std::string>& words) {
+    const auto known = [&words](std::string_view word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
+    const std::string small = small_letters(name);
+    for (const ForeignWord& row : kForeignWords) {
+        if (has_name(row.names, small) && known(row.word)) return fmt::format("; here it is {}", row.word);
+    }
+    return known("dxt5nm") || known("png") ? unwritten_type_answer(small) : std::string();
+}
+
+std::string unwritten_type_answer(std::string_view name) {
+    const std::string small = small_letters(name);
+    for (const UnwrittenType& row : kUnwrittenTypes) {
+        if (has_name(row.names, small))
+            return fmt::format("; {} is not written: make n.png, then run {}", small, row.command);
+    }
+    return {};
+}
+
+std::string common_word(std::string word) {
+    word = small_letters(word);
+    for (const ForeignWord& row : kForeignWords) {
+        if (row.is_same && has_name(row.names, word)) return std::string(row.word);
+    }
+    return word;
+}
+
+}  // namespace tex::cli
