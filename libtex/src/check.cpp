@@ -26,6 +26,7 @@
 #include "checks/rules.h"
 #include "checks/sign_rules.h"
 #include "checks/value_rules.h"
+#include "checks/y_verdict.h"
 #include "formats/level_planes.h"
 #include "rows/other_rows.h"
 #include "rows/unpack_rows.h"
@@ -164,7 +165,9 @@ Result<void> measure(CheckContext& context) {
         std::min(1.0, context.curl.usable * texels / std::max(1.0, static_cast<double>(context.counts.texels)));
     context.y.correlation = context.curl.correlation;
     context.y.confidence = context.curl.confidence;
-    context.y.y = clear_y(context.curl);
+    YVerdict verdict = verdict_of(context.curl);
+    context.y.y = verdict.y;
+    context.mixed_y = std::move(verdict.mixed);
     return {};
 }
 
@@ -256,10 +259,12 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = check_damage_rules(context, findings); !done) return done.error();
         if (auto done = check_sign_rules(context, findings); !done) return done.error();
         if (auto done = check_field_rules(context, findings); !done) return done.error();
+        context.pair = check_pair_rules(context, findings);
+        if (context.pair && context.pair->decides()) context.y.y = context.pair->y;
         check_convention_rules(context, findings);
         if (auto done = check_mip_rules(context, findings); !done) return done.error();
         CheckReport report;
-        report.pair = check_pair_rules(context, findings);
+        report.pair = context.pair;
         if (auto seams = check_mesh_rules(context, findings)) {
             report.seams = *seams;
         } else {

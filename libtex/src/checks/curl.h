@@ -8,7 +8,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include <tex/types.h>
@@ -77,8 +76,5 @@ Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::fu
 // axes) to 1 (lines at 45 degrees, of either direction). Where they are diagonal, x and y have no curl either way:
 // exchanging them mirrors the structure onto itself.
 double diagonal_share(const Stored& stored);
-
-// Where green points, if that is clear.
-std::optional<YAxis> clear_y(const Curl& curl);
 
 }  // namespace tex::inline v1

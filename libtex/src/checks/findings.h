@@ -13,6 +13,7 @@
 #include "checks/curl.h"
 #include "checks/stored.h"
 #include "checks/texel_counts.h"
+#include "checks/y_verdict.h"
 
 namespace tex::inline v1 {
 
@@ -30,7 +31,9 @@ struct CheckContext {
     std::optional<Background> background = {};
     TexelCounts counts = {};
     Curl curl = {};
-    YEvidence y = {};  // what the curl shows
+    YEvidence y = {};  // what the curl shows, or the heights where they decide
+    std::optional<MixedY> mixed_y = {};
+    std::optional<PairEvidence> pair = {};
 };
 
 class Findings {
