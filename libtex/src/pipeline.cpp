@@ -36,6 +36,8 @@ Result<void> validate(const PackFileOptions& options) {
         return bad_option("scale: must be at most 1e6 in magnitude");
     if (options.max_side < 0) return bad_option("max_side: must be 0, for no limit, or more");
     if (options.roughness && !options.mip) return bad_option("roughness: needs mip");
+    if (options.roughness && !options.roughness->format && !options.roughness->kept)
+        return bad_option("roughness: needs a format");
     if (auto valid = check_no_heights(options.others); !valid) return valid;
     return options.mip ? validate(*options.mip) : Result<void>();
 }
