@@ -27,7 +27,8 @@ public:
 
 private:
     void note_strength(cli::Job& job, const Strength& strength) const;
-    static void warn_of_flat(cli::Job& job, float usual_slope, const Strength& strength, Encoding encoding);
+    template <class Report>
+    void warn_of_flat(cli::Job& job, const Report& done) const;
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -38,7 +39,7 @@ private:
         reader_.note(job, done.heights);
         note_strength(job, done.strength);
         warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
-        warn_of_flat(job, done.usual_slope, done.strength, done.pack.encoding);
+        warn_of_flat(job, done);
     }
     [[nodiscard]] Error with_remedy(const Error& error) const override { return cli::HeightReader::with_remedy(error); }
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
@@ -131,7 +132,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
         job.say(
             fmt::format("{}: --bumpiness {}, as the file states\n", cli::printable(job.task.input), baked->strength.x));
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
-    warn_of_flat(job, baked->usual_slope, baked->strength, with.pack.encoding);
+    warn_of_flat(job, *baked);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};
@@ -153,20 +154,17 @@ void BakeNormals::note_strength(cli::Job& job, const Strength& strength) const {
         job.say(fmt::format("{}: --bumpiness auto is {}\n", job.task.input, strength.x));
 }
 
-// Of 8 bits: with more, faint slopes are kept.
-void BakeNormals::warn_of_flat(cli::Job& job, float usual_slope, const Strength& strength, Encoding encoding) {
-    constexpr double kFlatCodes = 4.0;
-    const FormatInfo info = format_info(encoding_info(encoding).format);
-    if (info.sample == SampleKind::floating || (!info.has_blocks() && info.bits > 8)) return;
-    const auto slope = static_cast<double>(usual_slope);
-    const double codes = 127.5 * slope / std::sqrt(1.0 + slope * slope);
-    if (codes >= kFlatCodes) return;
-    const double stronger = std::max(std::abs(strength.x), std::abs(strength.y));
-    if (slope == 0.0 || stronger == 0.0) return;  // a placeholder, or as it was asked for
+// Slopes that nobody sees.
+template <class Report>
+void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
+    constexpr double kFaint = 5.0, kDegrees = 57.295779513082320877;  // degrees of a radian
+    const double degrees = kDegrees * std::atan(static_cast<double>(done.usual_slope));
+    const bool is_asked_for = done.strength.x == 0.0f && done.strength.y == 0.0f;
+    if (degrees >= kFaint || done.auto_strength == 0.0f || is_asked_for) return;  // 0: a placeholder
     job.warn(
-        fmt::format("nearly flat: 99 % of the slopes are below {:.1f} codes of 8 bits; see --bumpiness and "
-                    "--height-range: --bumpiness {:.3g} would use the range",
-                    std::max(0.1, codes), stronger / slope));
+        fmt::format("nearly flat: 99 % of the slopes are below {:.2g} degrees, which shows little; --bumpiness "
+                    "auto would be --bumpiness {}",
+                    std::max(0.01, degrees), done.auto_strength));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

@@ -161,7 +161,7 @@ cli::ExitCode BuildNormals::work(cli::Console& console) {
     if (farm_.merges()) return farm_.merge(tree.recipes, command.inputs(), build_, running_, console);
     if (farm_.plan()) return farm_.run_shard(tree.recipes, build_, running_, console);
     find(tree, {}, console);
-    if (!explain_.empty()) return console.print(cli::explanation_of(explain_, tree.recipes, tree.work));
+    if (!explain_.empty()) return console.print(cli::explanation_of(explain_, tree.recipes, tree.work, console));
     if (farm_.is_used()) {
         cli::FarmPlan head;
         head.manifest = build_.manifest;

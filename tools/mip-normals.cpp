@@ -46,6 +46,8 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
                     "A picture for each level, for tools that put chains together themselves.");
     command.example("mip-normals rock_n.png -o rock_n.dds --roughness-in rock_orm.png:g --roughness-out rock_r.dds",
                     "The roughness map that keeps highlights steady from afar.");
+    command.example("mip-normals rock_n.png -o rock_n.dds --roughness-into rock_orm.png:g --roughness-out rock_orm.dds",
+                    "The same inside of a texture of occlusion, roughness and metalness.");
 }
 
 cli::OutputRules MipNormals::rules() const {

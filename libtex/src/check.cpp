@@ -165,10 +165,12 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = check_damage_rules(context, findings); !done) return done.error();
         if (auto done = check_sign_rules(context, findings); !done) return done.error();
         if (auto done = check_field_rules(context, findings); !done) return done.error();
+        context.pair = check_pair_rules(context, findings);
+        if (context.pair && context.pair->decides()) context.y.y = context.pair->y;
         check_convention_rules(context, findings);
         if (auto done = check_mip_rules(context, findings); !done) return done.error();
         CheckReport report;
-        report.pair = check_pair_rules(context, findings);
+        report.pair = context.pair;
         if (auto seams = check_mesh_rules(context, findings)) {
             report.seams = *seams;
         } else {

@@ -40,6 +40,8 @@ Result<void> validate(const PackFileOptions& options) {
     }
     if (!contains(kNoLimit, options.max_side)) return bad_option("max_side: " + requirement(kNoLimit));
     if (options.roughness && !options.mip) return bad_option("roughness: needs mip");
+    if (options.roughness && !options.roughness->format && !options.roughness->kept)
+        return bad_option("roughness: needs a format");
     if (auto valid = check_no_heights(options.others); !valid) return valid;
     return options.mip ? validate(*options.mip) : Result<void>();
 }

@@ -27,6 +27,7 @@ struct LastStep {
         report.heights = done->heights;
         report.strength = done->strength;
         report.usual_slope = done->usual_slope;
+        report.auto_strength = done->auto_strength;
         report.steep_texels = done->steep_texels;
         return take(*done);
     }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -47,19 +48,22 @@ TEST_F(Advice, NearlyFlatBakesNameTheStrengthThatUsesTheRange) {
     const Ran flat = done("bake-normals", {"bricks.png", "-o", "flat.png", "--bumpiness", "0.05"});
     const std::size_t at = flat.err.find("nearly flat: 99 % of the slopes are below ");
     ASSERT_NE(at, std::string::npos) << flat.err;
-    const std::size_t word = flat.err.find(": --bumpiness ", at);
+    const std::size_t word = flat.err.find("auto would be --bumpiness ", at);
     ASSERT_NE(word, std::string::npos) << flat.err;
-    const std::string strength = flat.err.substr(word + 14, flat.err.find(' ', word + 14) - word - 14);
+    const std::string strength = flat.err.substr(word + 26, flat.err.find('\n', word) - word - 26);
     EXPECT_EQ(done("bake-normals", {"bricks.png", "-o", "steep.png", "--bumpiness", strength}).err, "");
-    const Ran deep = done("bake-normals", {"bricks.png", "-o", "deep.exr", "--bumpiness", "0.05"});
-    EXPECT_EQ(deep.err.find("nearly flat"), std::string::npos) << "floats keep faint slopes";
+    // In any file, at any strength below 5 degrees; and the number is the same each time.
+    for (const char* bumpiness : {"0.001", "0.1", "-0.3"}) {
+        const Ran faint = done("bake-normals", {"bricks.png", "-o", "deep.exr", "--bumpiness", bumpiness});
+        EXPECT_NE(faint.err.find("auto would be --bumpiness " + strength + "\n"), std::string::npos) << faint.err;
+    }
+    EXPECT_EQ(done("bake-normals", {"bricks.png", "-o", "none.png", "--bumpiness", "0"}).err, "") << "as asked for";
 
     // The same figure, without asking twice; and 45 degrees is what it promises.
     const Ran automatic =
         done("bake-normals", {"bricks.png", "-o", "auto.exr", "--bumpiness", "auto", "--format", "float"});
     ASSERT_TRUE(automatic.out.starts_with("bricks.png: --bumpiness auto is ")) << automatic.out;
-    const double found = std::stod(automatic.out.substr(automatic.out.rfind(' ')));
-    EXPECT_NEAR(found / std::stod(strength), 1.0, 0.02);
+    EXPECT_EQ(automatic.out.substr(automatic.out.rfind(' ') + 1), strength + "\n");
     const auto source = read_normals(scratch_.path("auto.exr"));
     ASSERT_TRUE(source);
     const NormalMap& map = source->chain.levels[0];
@@ -77,6 +81,41 @@ TEST_F(Advice, AutomaticStrengthIsTheSameInABatchAndFromAPipe) {
     EXPECT_EQ(piped.code, 0) << piped.err;
     EXPECT_EQ(scratch_.read("file.png"), scratch_.read("piped.png"));
     EXPECT_EQ(run(scratch_, "integrate-normals", {"up.png", "-o", "h.png", "--bumpiness", "auto"}).code, 2);
+}
+
+TEST_F(Advice, BuildsPrintTheStrengthThatTheyFound) {
+    const Ran alone = done("bake-normals", {"bricks.png", "-o", "alone.dds", "--bumpiness", "auto"});
+    const std::string number = alone.out.substr(alone.out.rfind(' ') + 1);
+    const std::string rule = "version = 1\n[[rule]]\nmatch = \"bricks.png\"\n";
+    const std::string bake = "{ bake = { bumpiness = \"auto\" } }";
+    scratch_.write("one.toml", rule + "name = \"out/a.dds\"\nsteps = [ " + bake + " ]\n");
+    scratch_.write("two.toml", rule + "name = \"out/b.dds\"\nsteps = [ " + bake + ", { mip = {} } ]\n");
+    for (const char* manifest : {"one.toml", "two.toml"}) {
+        const Ran text = done("build-normals", {manifest});
+        EXPECT_NE(text.out.find("bricks.png: --bumpiness auto is " + number), std::string::npos) << text.out;
+        std::filesystem::remove_all(scratch_.path("out"));
+        const Ran json = done("build-normals", {manifest, "--json"});
+        const auto line = nlohmann::json::parse(lines_of(json.out)[0]);
+        EXPECT_FLOAT_EQ(line["bumpiness"][0].get<float>(), std::stof(number)) << json.out;
+        EXPECT_EQ(json.out.find("auto is"), std::string::npos) << json.out;
+    }
+}
+
+// What is said about a map that went through the sRGB curve, by commands of others.
+TEST_F(Advice, ColourCurvesAreTurnedBack) {
+    for (const auto& [id, damage] : {std::pair("N301", "-set colorspace sRGB -colorspace RGB -set colorspace sRGB"),
+                                     std::pair("N302", "-set colorspace RGB -colorspace sRGB")}) {
+        ASSERT_EQ(shell(scratch_, std::string("convert up.png -depth 8 ") + damage + " bad.png").code, 0);
+        const auto report = nlohmann::json::parse(run(scratch_, "check-normals", {"bad.png", "--json"}).out);
+        ASSERT_EQ(report["findings"][0]["id"], id) << report;
+        const std::string advice = report["findings"][0]["advice"];
+        std::string command = advice.substr(advice.find("convert FILE"));
+        command.replace(command.find("FILE"), 4, "bad.png");
+        ASSERT_EQ(shell(scratch_, command + " && mv FIXED.png mended.png").code, 0) << command;
+        const Ran after = run(scratch_, "check-normals", {"mended.png"});
+        EXPECT_EQ(after.out.find(id), std::string::npos) << after.out;
+        done("compare-normals", {"up.png", "mended.png", "--max-mean", "1.5"});
+    }
 }
 
 TEST_F(Advice, HeightsNameTheBakeThatMakesTheMapAgain) {

@@ -54,6 +54,15 @@ TEST_F(Baselines, NameFilesBesideThemselves) {
     EXPECT_EQ(scratch_.read("art/more.json").find("content"), std::string::npos) << "a stream cannot be read again";
 }
 
+TEST_F(Baselines, PagesShowWhatIsAccepted) {
+    EXPECT_EQ(check("check-normals art/down.dds --require y=up --baseline art/known.json --report page.html"), 0);
+    const std::string page = scratch_.read("page.html");
+    EXPECT_NE(page.find("1 accepted</span>"), std::string::npos);
+    EXPECT_NE(page.find("Accepted by the baseline:"), std::string::npos);
+    EXPECT_NE(page.find("N401 wrong-y</a>"), std::string::npos);
+    EXPECT_EQ(page.find("nothing found</span>"), std::string::npos);
+}
+
 // Files are as they were given: relative to the folder of the run.
 TEST_F(Baselines, OfVersion1AreStillRead) {
     scratch_.write("art/old.json",

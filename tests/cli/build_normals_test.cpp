@@ -316,6 +316,33 @@ TEST_F(BuildNormals, ExplainPrintsTheRuleAndTheCommandLines) {
     EXPECT_EQ(run(scratch_, "build-normals", {"--explain", "mask.png"}).out, "mask.png" + reader);
 }
 
+// The values are those of the run, not the defaults of the command.
+TEST_F(BuildNormals, ExplainPrintsWhatAnEngineDecides) {
+    scratch_.write("normals.toml", R"(version = 1
+[[rule]]
+match = "art/wall_h.png"
+steps = [ { bake = {} }, { pack = {} } ]
+outputs = [ { name = "g/{stem}.png", for = "godot" }, { name = "b/{stem}.ktx2", for = "bevy", y = "down" },
+            { name = "p/{stem}.dds" } ]
+)");
+    const Ran ran = run(scratch_, "build-normals", {"--explain", "art/wall_h.png"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    const std::size_t godot = ran.out.find("pack for g/"), bevy = ran.out.find("pack for b/"),
+                      plain = ran.out.find("pack for p/");
+    ASSERT_TRUE(godot < bevy && bevy < plain && plain != std::string::npos) << ran.out;
+    const std::string parts[] = {ran.out.substr(godot, bevy - godot), ran.out.substr(bevy, plain - bevy),
+                                 ran.out.substr(plain)};
+    const auto expect = [&](const std::string& part, std::initializer_list<const char*> lines) {
+        for (const char* line : lines) EXPECT_NE(part.find(line), std::string::npos) << line << "\n" << part;
+    };
+    expect(parts[0],
+           {"    format = rgb8  (for = godot)\n", "    y = up  (for = godot)\n", "    mips = none  (for = godot)\n"});
+    expect(parts[1],
+           {"    format = bc5  (for = bevy)\n", "    y = down  (outputs, line 5)\n", "    mips = all  (for = bevy)\n"});
+    expect(parts[2], {"    format = dxt5nm  (default of pack-normals for .dds)\n", "    y = as in the input"});
+    EXPECT_EQ(parts[0].find("dxt5nm"), std::string::npos) << parts[0];
+}
+
 // A default means nothing beside a setting that is used instead. An output with a file for each level is found by each.
 TEST_F(BuildNormals, ExplainKnowsWhatReplacesADefaultAndTheFilesOfLevels) {
     scratch_.write("normals.toml", R"(version = 1

@@ -373,6 +373,45 @@ TEST(FaultsOfThreads, ThoseThatAreRefusedLaterAreOneSentence) {
     }
 }
 
+// The one file that a command reads and replaces: it is read whole before, so it is the old one or the new one.
+TEST(FaultsInPlace, ATextureThatGetsRoughnessIsTheOldOneOrTheNewOne) {
+    const Scratch scratch, counts;
+    scratch.add_sample("ramp.png", "h.png");
+    ASSERT_EQ(
+        shell(scratch,
+              "bake-normals h.png -o n.exr --format half --no-sync && bake-normals h.png -o orm.dds --format rgba8 "
+              "--bumpiness 3 --mips none --no-sync && cp orm.dds old")
+            .code,
+        0);
+    const std::string old = scratch.read("old");
+    const auto go = [&](int at, bool kills) {
+        counts.write("calls", std::string(sizeof(int), '\0'));
+        Setting setting;
+        setting.environment = {"LD_PRELOAD=" TEX_BINARY_DIR "/faults.so", "TEX_FAULT_COUNT=" + counts.path("calls"),
+                               fmt::format("TEX_FAULT_AT={}", at), fmt::format("TEX_FAULT_NO_TMPFILE={}", at / 2 % 2)};
+        setting.environment.push_back(kills ? "TEX_FAULT_KILL=1" : fmt::format("TEX_FAULT_ERRNO={}", EIO));
+        return run(scratch, "mip-normals", {"n.exr", "-o", "out.dds", "--roughness-into", "orm.dds:g"}, setting);
+    };
+    ASSERT_EQ(go(1 << 20, false).code, 0);
+    const std::string made = scratch.read("orm.dds");
+    ASSERT_NE(made, old);
+    int failed = 0;
+    for (const bool kills : {false, true}) {
+        for (int n = 1;; n += kills ? 3 : 1) {
+            SCOPED_TRACE(testing::Message() << "call " << n << (kills ? ", killed" : ""));
+            scratch.write("orm.dds", old);
+            const Ran ran = go(n, kills);
+            int calls = 0;
+            std::memcpy(&calls, counts.read("calls").data(), sizeof calls);
+            const std::string now = scratch.read("orm.dds");
+            EXPECT_TRUE(now == made || (ran.code != 0 && now == old)) << now.size() << " bytes";
+            failed += ran.code != 0;
+            if (calls < n) break;
+        }
+    }
+    EXPECT_GT(failed, 10);
+}
+
 INSTANTIATE_TEST_SUITE_P(Cases, Faults, testing::ValuesIn(kCases),
                          [](const auto& test) { return std::string(test.param.name); });
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // --y-in measured: the texels show which way green points.
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/tex.h>
 
 #include "cli/program.h"
 
@@ -122,6 +125,53 @@ TEST_F(MeasuredY, MapsThatDoNotShowItAreErrorsThatNameThem) {
                           {"up.png", "-o", "out.png", "--detail", "flat.png", "--y-in", "measured", "--quiet"});
     EXPECT_EQ(blend.code, 4);
     EXPECT_NE(blend.err.find("flat.png: which way green points"), std::string::npos) << blend.err;
+}
+
+// Neither direction is right for all of such a map, so nothing is flipped; the words are those of the check.
+TEST_F(MeasuredY, MapsOfBothDirectionsAreErrorsToo) {
+    EXPECT_EQ(shell(scratch_, "cp " TEX_SOURCE_DIR "/samples/broken/N402-mixed-y.png mixed.png").code, 0);
+    const std::string found = run(scratch_, "check-normals", {"mixed.png"}).out;
+    const std::size_t first = found.find("N402 mixed-y: Green points up in one part of the map and down in another: ");
+    ASSERT_NE(first, std::string::npos) << found;
+    const std::size_t begin = found.find("another: ", first) + 9;
+    const std::string words = found.substr(begin, found.find('\n', begin) - begin);
+    for (const char* command : {"pack-normals", "mip-normals"}) {
+        const Ran ran = run(scratch_, command, {"mixed.png", "-o", "out.dds", "--y-in", "measured", "--quiet"});
+        EXPECT_EQ(ran.code, 4);
+        EXPECT_NE(ran.err.find("mixed.png: green points up in one part of the map and down in another: " + words),
+                  std::string::npos)
+            << ran.err;
+        EXPECT_FALSE(scratch_.has("out.dds"));
+    }
+    const Ran held = run(scratch_, "preview-normals", {"mixed.png", "-o", "out.png", "--y-in", "measured", "--quiet"});
+    EXPECT_EQ(held.code, 4);
+    EXPECT_NE(held.err.find(words), std::string::npos) << held.err;
+}
+
+// What the check measures is what is read.
+TEST_F(MeasuredY, RealMapsHaveOneDirection) {
+    const std::string folder = TEX_SOURCE_DIR "/../shared/data/";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared/data is not there";
+    std::vector<std::string> maps;
+    for (const char* below : {"normal", "wild4/normal", "trial"}) {
+        std::vector<std::string> here;
+        for (const auto& entry : std::filesystem::directory_iterator(folder + below)) {
+            const std::string name = entry.path().string();
+            if (name.ends_with(".png") || (name.ends_with(".jpg") && name.find("normal") != std::string::npos))
+                here.push_back(name);
+        }
+        std::sort(here.begin(), here.end());
+        for (std::size_t k = 0; k < here.size(); k += 9) maps.push_back(here[k]);
+    }
+    for (const std::string& map : maps) {
+        const auto report = check_file(map);
+        if (!report || report->error) continue;
+        SourceOptions options;
+        options.measure_y = true;
+        const auto source = read_normals(map, options);
+        const std::optional<YAxis> read = source ? std::optional(source->info.y_axis) : std::nullopt;
+        EXPECT_TRUE(read == report->y.y) << map << ": " << report->y.correlation << " " << report->y.confidence;
+    }
 }
 
 TEST_F(MeasuredY, ItIsAKeyOfManifests) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Roughness maps written with mip chains: mip-normals --roughness-out.
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -41,12 +43,13 @@ protected:
         EXPECT_TRUE(read) << name;
         return std::move(*read);
     }
-    // The mean of one level.
-    double mean(const std::string& name, int level) {
+    // The mean of one level, of one channel.
+    double mean(const std::string& name, int level, std::size_t channel = 0) {
         const auto image = decode(texture(name), level);
+        if (!image || channel >= image->planes.size()) return -1.0;
         double sum = 0.0;
         for (int j = 0; j < image->extent().height; ++j) {
-            for (int i = 0; i < image->extent().width; ++i) sum += static_cast<double>(image->planes[0].at(i, j));
+            for (int i = 0; i < image->extent().width; ++i) sum += static_cast<double>(image->planes[channel].at(i, j));
         }
         return sum / static_cast<double>(image->extent().texels());
     }
@@ -68,7 +71,7 @@ protected:
 TEST_F(RoughnessOut, HasTheLevelsOfTheNormalsAndGetsRougher) {
     does("mip-normals", {"n.png", "-o", "n.dds", "--roughness-in", "0.25", "--roughness-out", "r.dds"});
     const Texture normals = texture("n.dds"), roughness = texture("r.dds");
-    EXPECT_EQ(roughness.format, Format::bc4_unorm);
+    EXPECT_EQ(roughness.format, Format::bc5_unorm);
     ASSERT_EQ(roughness.levels.size(), normals.levels.size());
     for (std::size_t k = 0; k < roughness.levels.size(); ++k)
         EXPECT_EQ(roughness.levels[k].extent, normals.levels[k].extent);
@@ -96,7 +99,7 @@ TEST_F(RoughnessOut, ModelsDifferAsTheyPromise) {
 }
 
 TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
-    const std::pair<std::string, Format> kinds[] = {{"r.ktx2", Format::bc4_unorm}, {"r.exr", Format::r16_float}};
+    const std::pair<std::string, Format> kinds[] = {{"r.ktx2", Format::bc5_unorm}, {"r.exr", Format::r16_float}};
     for (const auto& [name, format] : kinds) {
         does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-out", name});
         EXPECT_EQ(texture(name).format, format) << name;
@@ -129,6 +132,179 @@ TEST_F(RoughnessOut, FollowsTheExtensionAndTheFormat) {
     ASSERT_TRUE(picture);
     EXPECT_EQ(picture->names, std::vector<std::string>{"Y"});
     EXPECT_EQ(picture->planes[0].at(3, 3), 1.0f);
+}
+
+// Nobody reads red alone: without an engine it is everywhere, and else where the engine reads it.
+TEST_F(RoughnessOut, GoesWhereTheEngineReadsIt) {
+    struct Case {
+        const char* engine;
+        std::string file;
+        Format format;
+        double red, green, blue, alpha;  // -1: there is no such channel
+    };
+    const Case cases[] = {
+        {"", "r.dds", Format::bc5_unorm, 0.25, 0.25, -1, -1},
+        {"", "r.png", Format::r8_unorm, 0.25, -1, -1, -1},
+        {"gltf", "r.png", Format::rgb8_unorm, 1, 0.25, 1, -1},
+        {"gltf", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
+        {"three", "r.exr", Format::rgb16_float, 1, 0.25, 1, -1},
+        {"three-packed", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
+        {"godot", "r.tif", Format::rgb16_unorm, 1, 0.25, 1, -1},
+        {"bevy", "r.dds", Format::bc5_unorm, 1, 0.25, -1, -1},
+        {"unity", "r.png", Format::rgba8_unorm, 0, 1, 1, 0.75},
+        {"unity", "r.dds", Format::rgba8_unorm, 0, 1, 1, 0.75},
+        {"unreal", "r.png", Format::r8_unorm, 0.25, -1, -1, -1},
+        {"android", "r.ktx2", Format::eac_rg11_unorm, 0.25, 0.25, -1, -1},
+    };
+    for (const Case& each : cases) {
+        SCOPED_TRACE(std::string(each.engine) + " " + each.file);
+        std::vector<std::string> arguments = {"n.png",  "-o",   "n.dds",          "--effort", "fast",
+                                              "--mips", "none", "--roughness-in", "0.25",     "--roughness-out",
+                                              each.file};
+        if (*each.engine != '\0') arguments.insert(arguments.end(), {"--for", each.engine, "--format", "bc5"});
+        const Ran ran = go("mip-normals", arguments);
+        ASSERT_EQ(ran.code, 0) << ran.err;
+        EXPECT_EQ(texture(each.file).format, each.format);
+        EXPECT_NEAR(mean(each.file, 0, 0), each.red, 0.003);
+        EXPECT_NEAR(mean(each.file, 0, 1), each.green, 0.003);
+        EXPECT_NEAR(mean(each.file, 0, 2), each.blue, 0.003);
+        EXPECT_NEAR(mean(each.file, 0, 3), each.alpha, 0.003);
+    }
+    before_ = scratch_.list();
+    refuses({"--for", "gltf", "--format", "bc5", "--roughness-out", "r.dds", "--roughness-format", "bc4"}, 2,
+            "--roughness-format bc4 has no channel G of its own, which gltf reads");
+    refuses({"--for", "unity", "--format", "bc5", "--roughness-out", "r.dds", "--roughness-format", "bc5"}, 2,
+            "--roughness-format bc5 has no channel A of its own, which unity reads");
+    refuses({"--for", "three", "--format", "bc5", "--roughness-out", "r.exr", "--roughness-format", "half"}, 2,
+            "has no channel G of its own, which three reads");
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--for", "three", "--format", "bc5",
+                         "--roughness-in", "0.25", "--roughness-out", "a.ktx2", "--roughness-format", "astc-6x6"});
+    EXPECT_NEAR(mean("a.ktx2", 0, 1), 0.25, 0.003) << "luminance is in green, too";
+}
+
+class RoughnessInto : public RoughnessOut {
+protected:
+    RoughnessInto() {
+        // Occlusion, roughness, metalness, without and with levels of its own.
+        const Ran ran =
+            shell(scratch_,
+                  "convert h.png -depth 8 -colorspace gray o.png && convert waves.png -resize 512x512! -depth "
+                  "8 -colorspace gray r.png && convert h.png -colorspace gray -threshold 50% m.png && "
+                  "convert o.png r.png m.png -combine -define png:color-type=2 -depth 8 orm.png");
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        before_ = scratch_.list();
+    }
+    Image level(const std::string& name, int k) {
+        auto image = decode(texture(name), k);
+        EXPECT_TRUE(image) << name;
+        return image ? std::move(*image) : Image{};
+    }
+    static double difference(const Plane<float>& a, const Plane<float>& b) {
+        if (a.extent() != b.extent()) return 1.0;
+        double most = 0.0;
+        for (int j = 0; j < a.extent().height; ++j) {
+            for (int i = 0; i < a.extent().width; ++i)
+                most = std::max(most, std::abs(static_cast<double>(a.at(i, j)) - static_cast<double>(b.at(i, j))));
+        }
+        return most;
+    }
+};
+
+TEST_F(RoughnessInto, MakesATextureWithWhatIsKept) {
+    const std::string before = scratch_.read("orm.png");
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-into", "orm.png:g", "--roughness-out", "orm.dds"});
+    EXPECT_TRUE(scratch_.read("orm.png") == before);
+    const Texture made = texture("orm.dds");
+    EXPECT_EQ(made.format, Format::rgb8_unorm) << "that of the picture";
+    EXPECT_EQ(made.levels.size(), 10u);
+    const Image base = level("orm.dds", 0), source = level("orm.png", 0);
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(difference(base.planes[c], source.planes[c]), 0.0) << c;
+    // Green is what it would be alone, and the others are averages.
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-in", "orm.png:g", "--roughness-out",
+                         "alone.dds", "--roughness-format", "r8"});
+    for (int k = 0; k < 10; ++k) {
+        EXPECT_EQ(difference(level("orm.dds", k).planes[1], level("alone.dds", k).planes[0]), 0.0) << k;
+        for (const std::size_t c : {std::size_t{0}, std::size_t{2}})
+            EXPECT_NEAR(mean("orm.dds", k, c), mean("orm.png", 0, c), 0.004) << k;
+    }
+}
+
+TEST_F(RoughnessInto, ReplacesATextureWhole) {
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-into", "orm.png:g", "--roughness-out", "orm.dds"});
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-in", "0.5", "--roughness-into", "orm.dds:b"});
+    const Texture made = texture("orm.dds");
+    EXPECT_EQ(made.format, Format::rgb8_unorm);
+    ASSERT_EQ(made.levels.size(), 10u);
+    EXPECT_NEAR(mean("orm.dds", 0, 2), 0.5, 0.003);
+    EXPECT_GT(mean("orm.dds", 4, 2), 0.5);
+    // The levels of the others stay as they were.
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-into", "orm.png:g", "--roughness-out", "again.dds"});
+    for (int k = 0; k < 10; ++k) {
+        for (const std::size_t c : {std::size_t{0}, std::size_t{1}})
+            EXPECT_EQ(difference(level("orm.dds", k).planes[c], level("again.dds", k).planes[c]), 0.0) << k;
+    }
+    // Once more, it changes nothing; and a link to it stays one.
+    std::filesystem::create_symlink("orm.dds", scratch_.path("link.dds"));
+    std::string before;
+    for (const char* name : {"orm.dds", "link.dds"}) {
+        does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-into", std::string(name) + ":b"});
+        EXPECT_TRUE(before.empty() || scratch_.read("orm.dds") == before);
+        before = scratch_.read("orm.dds");
+    }
+    EXPECT_TRUE(std::filesystem::is_symlink(scratch_.path("link.dds")));
+    // A picture holds one level.
+    does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--mips", "none", "--roughness-in", "0.5",
+                         "--roughness-into", "orm.png:g"});
+    EXPECT_NEAR(mean("orm.png", 0, 1), 0.5, 0.003);
+    EXPECT_EQ(difference(level("orm.png", 0).planes[0], level("again.dds", 0).planes[0]), 0.0);
+}
+
+TEST_F(RoughnessInto, UnitysSmoothnessIsRead) {
+    does("mip-normals", {"n.png", "-o", "m.dds", "--for", "unity", "--format", "bc5", "--mips", "all", "--effort",
+                         "fast", "--roughness-in", "0.25", "--roughness-out", "mask.dds"});
+    does("mip-normals", {"n.png", "-o", "m.dds", "--for", "unity", "--format", "bc5", "--mips", "all", "--effort",
+                         "fast", "--roughness-into", "mask.dds:a"});
+    EXPECT_NEAR(mean("mask.dds", 0, 3), 0.75, 0.003);
+    EXPECT_LT(mean("mask.dds", 4, 3), 0.75);
+    EXPECT_EQ(mean("mask.dds", 4, 0), 0.0);
+}
+
+TEST_F(RoughnessInto, MisuseIsRefused) {
+    refuses({"--roughness-into", "orm.png"}, 2, "needs a channel, r, g, b or a");
+    refuses({"--roughness-into", "orm.png:luma"}, 2, "needs a channel, r, g, b or a");
+    refuses({"--roughness-into", "orm.png:g"}, 2, "png files hold one level; give --roughness-out");
+    refuses({"--roughness-into", "orm.png:a", "--roughness-out", "o.dds"}, 4,
+            "orm.png: the picture has no channel for \"a\"");
+    refuses({"--roughness-into", "orm.png:a", "--roughness-in", "0", "--roughness-out", "o.dds"}, 4,
+            "orm.png: has no channel A");
+    refuses({"--roughness-into", "waves.png:r", "--roughness-out", "o.dds"}, 4,
+            "the texture for roughness is 128x128, the normal map 512x512");
+    refuses({"--roughness-into", "none.dds:g"}, 3, "none.dds: ");
+    refuses({"--roughness-into", "orm.png:g", "--roughness-out", "orm.png", "--mips", "none"}, 2,
+            "the output orm.png is the input orm.png");
+    refuses({"--roughness-into", "n.png:g", "--mips", "none"}, 2, "the output n.png is the input n.png");
+    refuses({"--roughness-into", "orm.png:g", "--mips", "none", "--update"}, 2, "--update cannot tell");
+    does("pack-normals", {"n.png", "-o", "blocks.dds", "--format", "bc5", "--effort", "fast"});
+    before_ = scratch_.list();
+    const std::string blocks = scratch_.read("blocks.dds");
+    refuses({"--roughness-into", "blocks.dds:g"}, 4, "the texture for roughness holds bc5-unorm");
+    EXPECT_TRUE(scratch_.read("blocks.dds") == blocks);
+    // A picture without a channel that is named.
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "orm.png"}, 4, "orm.png: its channels differ (R is 0.");
+    refuses({"--roughness-out", "r.dds", "--roughness-in", "orm.png"}, 4, "--roughness-in orm.png:g");
+    does("mip-normals",
+         {"n.png", "-o", "x.dds", "--effort", "fast", "--roughness-in", "orm.png:g", "--roughness-out", "r.dds"});
+    EXPECT_NEAR(mean("r.dds", 0), mean("orm.png", 0, 1), 0.003);
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"n.png\"\nname = \"out/{stem}.dds\"\n"
+                   "steps = [ { mip = { roughness-into = \"orm.dds:g\" } } ]\n");
+    const Ran build = run(scratch_, "build-normals", {});
+    EXPECT_EQ(build.code, 2);
+    EXPECT_NE(build.err.find("so a manifest needs --roughness-out"), std::string::npos) << build.err;
 }
 
 TEST_F(RoughnessOut, StretchesMapsOfOtherSizes) {

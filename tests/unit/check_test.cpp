@@ -205,6 +205,27 @@ TEST(Check, RequirementsAreWhatTheySay) {
     EXPECT_EQ(ids(cut, requiring({"tiles"})), Ids{"N307"});
 }
 
+// Boards whose joints run down the map. Where the border lies in a joint, it is as steep as the joints inside.
+TEST(Check, ABorderInAJointIsNoSeam) {
+    constexpr int kSide = 512;
+    const auto boards = [&](int shift) {
+        HeightField field;
+        field.height = Plane<float>({kSide, kSide});
+        field.bumpiness_x = field.bumpiness_y = 1.0f;
+        for (int j = 0; j < kSide; ++j) {
+            for (int i = 0; i < kSide; ++i) {
+                const int across = (i + shift) % 256;
+                const float grain = 0.6f * std::sin(0.012271846f * static_cast<float>(j * 32 + i * 16));
+                field.height.at(i, j) = grain - (across < 2 ? 3.0f : 0.0f);
+            }
+        }
+        auto map = bake(field);
+        EXPECT_TRUE(map);
+        return reference::texture_of(reference::codes_of(*map));
+    };
+    for (const int shift : {0, 1, 2, 20}) EXPECT_EQ(ids(boards(shift), requiring({"tiles"})), Ids{}) << shift;
+}
+
 TEST(Check, RefusesRequirementsThatMeanNothing) {
     Requirements requirements;
     for (const char* text :

@@ -163,7 +163,7 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         const Plane<float> own(extent, file.own);
         const RoughnessChain chain = build_roughness_chain(base, own, file.model, mip).value();
         const Bytes expected =
-            encode_file(pack_roughness(chain, file.format, file.effort).value(), file.container, pack_.write).value();
+            encode_file(pack_roughness(chain, *file.format, file.effort).value(), file.container, pack_.write).value();
 
         Result<InputFile> opened = InputFile::open(input);
         const StreamSizes sizes{1 << (2 + random() % 10), 0};
@@ -187,7 +187,7 @@ TEST_F(OutputFiles, RoughnessHasTheBytesOfTheVerbs) {
         const auto mapped = pack_file(input, path("out"), Container::dds, pack_, {1 + round % 3, {}});
         ASSERT_TRUE(mapped) << mapped.error().message();
         const RoughnessChain rough = build_roughness_chain(base, make_map(), file.model, mip).value();
-        const Texture packed = pack_roughness(rough, file.format, file.effort).value();
+        const Texture packed = pack_roughness(rough, *file.format, file.effort).value();
         EXPECT_TRUE(bytes_of(path("rough")) == encode_file(packed, file.container, pack_.write).value());
         EXPECT_EQ(mapped->roughness_bytes, bytes_of(path("rough")).size());
         EXPECT_TRUE(bytes_of(path("out")) == normals);

@@ -48,13 +48,15 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
                 }
             }
         });
-    row.words = {{"all", "down to 1x1"}, {"none", "the base level alone"}};
+    row.words = {{"all", "down to 1x1"}, {"none", "one level, the base level"}};
     if (with_keep) row.words.insert(row.words.begin() + 1, {"keep", "those of the source"});
     row.completes = Completes::words;
     row.often(4, with_keep ? "levels: all, keep, none or a number" : "levels: all, none or a number").preset =
         std::move(levels_default);
 
-    command.number(mip.max_side, "--max-size", "N", 1, kMaxExtent, "leave out levels with a side of more texels")
+    command
+        .number(mip.max_side, "--max-size", "N", 1, kMaxExtent,
+                "halve the map until no side has more than N texels; smaller levels follow")
         .preset = "no limit";
     command.choice(mip.filter, "--mip-filter", "F", kMipFilterNames, "the filter from level to level");
     command.choice(mip.domain, "--mip-domain", "D", kMipDomainNames, "what is averaged");

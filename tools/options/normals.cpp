@@ -221,8 +221,8 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
     }
     if (info.z_doubtful && !length_in) {
         job.warn(
-            "what is read as z does not follow x and y; if that channel holds other data, --swizzle rg (x in R, y in "
-            "G) rebuilds z",
+            "the channel that is read as z does not follow x and y, so it seems to hold other data, such as occlusion "
+            "or heights; --swizzle rg (x in R, y in G) makes z from x and y instead",
             path);
     }
     if (info.background > 0.0 && warns_of_background) {

@@ -3,6 +3,9 @@
 #include "options/roughness.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -25,6 +28,74 @@ Container container_for(const std::string& path) {
     throw UsageError(kOption, fmt::format("{}: unsupported output format", printable(path)));
 }
 
+// The place of a channel in R, G, B, A.
+std::size_t place_of(HeightChannel channel) {
+    return static_cast<std::size_t>(channel) - static_cast<std::size_t>(HeightChannel::r);
+}
+
+bool is_one_of_rgba(HeightChannel channel) {
+    return channel == HeightChannel::r || channel == HeightChannel::g || channel == HeightChannel::b ||
+           channel == HeightChannel::a;
+}
+
+constexpr RoughnessParts kEverywhere = {RoughnessPart::roughness, RoughnessPart::roughness, RoughnessPart::roughness,
+                                        RoughnessPart::one};
+
+// 1 leaves occlusion out, and metalness to the material's factor.
+constexpr RoughnessParts kGreen = {RoughnessPart::one, RoughnessPart::roughness, RoughnessPart::one,
+                                   RoughnessPart::one};
+constexpr RoughnessParts kSmoothness = {RoughnessPart::zero, RoughnessPart::one, RoughnessPart::one,
+                                        RoughnessPart::smoothness};
+
+// Whether R, G and B are the same: in ASTC, and in pictures of one channel, except EXR, which is read as red.
+bool holds_luminance(Format format) {
+    const FormatInfo info = format_info(format);
+    return info.has_blocks() && info.channels == 4;
+}
+bool is_grey(Container container, Format format) {
+    return format_info(format).channels == 1 && !can_hold_blocks(container) && container != Container::exr;
+}
+
+// The texture into which roughness is written, if it has that channel.
+Result<Texture> read_kept(const ChannelFile& file, const ReadOptions& read) {
+    Result<Texture> texture = read_texture(file.file, read);
+    if (!texture) return texture;
+    const std::size_t place = place_of(file.channel);
+    if (static_cast<int>(place) < format_info(texture->format).channels) return texture;
+    return Error{ErrorCode::bad_data, file.file,
+                 fmt::format("has no channel {}, into which --roughness-into writes", "RGBA"[place])};
+}
+
+// The map of the material's roughness. Without a channel, all of them must be the same: luma would be none of them.
+Result<Plane<float>> read_roughness(Job& job, const ChannelFile& file) {
+    const Execution execution{job.threads(), {}};
+    if (file.channel != HeightChannel::automatic) return read_channel(job, file, execution);
+    ReadOptions read = job.read_options;
+    read.values = FileValues::unit;
+    const auto image = read_image(file.file, read);
+    if (!image) return image.error();
+    if (image->planes.size() < 3) return read_channel(job, file, execution);
+    std::string ranges;
+    bool differ = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+        float least = 1.0f, most = 0.0f;
+        for (int j = 0; j < image->extent().height; ++j) {
+            for (int i = 0; i < image->extent().width; ++i) {
+                const float value = image->planes[c].at(i, j);
+                least = std::min(least, value);
+                most = std::max(most, value);
+                differ = differ || !(value == image->planes[0].at(i, j));
+            }
+        }
+        ranges += fmt::format("{}{} is {:.2f} to {:.2f}", c == 0 ? "" : ", ", "RGB"[c], least, most);
+    }
+    if (!differ) return read_channel(job, {file.file, HeightChannel::r}, execution);
+    return Error{ErrorCode::bad_data, file.file,
+                 fmt::format("its channels differ ({}): name the one that holds roughness, such as --roughness-in "
+                             "{}:g, which it is in textures of occlusion, roughness and metalness (ORM)",
+                             ranges, shell_file(file.file))};
+}
+
 }  // namespace
 
 void RoughnessOptions::add(Command& command, const FileOptions& files) {
@@ -35,30 +106,49 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
             output_, kOption,
             "write a roughness map whose levels make up for what the normals lose; of many inputs a pattern as --name")
         .often(4, "write a roughness map that suits the levels");
+    command
+        .option("--roughness-into", "FILE:CHANNEL",
+                "write it into this channel (r, g, b, a) of a texture, and keep the others; replaces FILE, or with "
+                "--roughness-out makes that",
+                [this](const std::string& text) { take_into(text); })
+        .completes = Completes::files;
     Row& input =
         command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",
                        [this](const std::string& text) { take_input(text); });
-    input.preset = "0";
+    input.preset = "0, or what --roughness-into has there";
     input.completes = Completes::files;
     command.choice(model_, "--roughness-model", "M", kRoughnessModelNames, "how lost variance becomes roughness");
     command.choice(format_, "--roughness-format", "F", kRoughnessFormatNames, "how roughness is stored").preset =
-        "bc4 in dds, ktx2; astc-4x4 in astc; r16 in tiff; half in exr; else r8";
+        "by file type and --for: bc5 in dds, ktx2; astc-4x4 in astc; r16 in tiff; half in exr; else r8";
     command.check([this, &command] {
         const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
         if (command.given(kOption) && output_.empty()) throw UsageError(kOption, "needs a value that is not empty");
         if (output_ == "-") throw UsageError(kOption, "needs a file, not standard output");
-        if (!is_given() && !idle.empty()) throw UsageError(idle.front() + " does nothing without --roughness-out");
+        if (!is_given() && !idle.empty())
+            throw UsageError(idle.front() + " does nothing without --roughness-out or --roughness-into");
+        if (is_in_place() && files_->update) {
+            throw UsageError(
+                "--update cannot tell whether a file that --roughness-into replaces is up to date: give "
+                "--roughness-out, too");
+        }
     });
 }
 
 void RoughnessOptions::amend(Task& task) const {
     if (!is_given()) return;
-    task.more_outputs.push_back(output_of(task));
-    if (!input_.file.empty()) task.own.push_back(input_of(task).file);
+    const std::string output = output_of(task);
+    task.more_outputs.push_back(output);
+    const auto reads = [&](const ChannelFile& file) {
+        // Its own texture is read before it is replaced.
+        if (!file.file.empty() && !(is_in_place() && file.file == output)) task.own.push_back(file.file);
+    };
+    if (!into_.file.empty()) reads(expanded(into_, task));
+    if (!input_.file.empty()) reads(expanded(input_, task));
 }
 
 void RoughnessOptions::take_input(const std::string& text) {
     input_ = {};
+    value_.reset();
     const bool is_number = !text.empty() && text.find_first_not_of("+-.0123456789eE") == std::string::npos;
     if (is_number) {
         value_ = parse_float(text, {0.0, 1.0});
@@ -69,38 +159,102 @@ void RoughnessOptions::take_input(const std::string& text) {
     if (NamePattern(input_.file).uses("level")) throw UsageError("{level} has no meaning for an input");
 }
 
+void RoughnessOptions::take_into(const std::string& text) {
+    into_ = parse_channel_file(text);
+    if (!is_one_of_rgba(into_.channel))
+        throw UsageError(
+            "needs a channel, r, g, b or a: FILE:g for the green of occlusion, roughness, metalness (ORM)");
+    if (into_.file == "-") throw UsageError("needs a file, not standard input");
+    if (NamePattern(into_.file).uses("level")) throw UsageError("needs one file with all levels, not {level}");
+}
+
+ChannelFile RoughnessOptions::expanded(const ChannelFile& pattern, const Task& task) const {
+    return {NamePattern(pattern.file).expand(name_fields(task.named())), pattern.channel};
+}
+
 ChannelFile RoughnessOptions::input_of(const Task& task) const {
-    return {NamePattern(input_.file).expand(name_fields(task.named())), input_.channel};
+    if (!input_.file.empty() || value_ || into_.file.empty()) return expanded(input_, task);
+    return expanded(into_, task);
 }
 
 std::string RoughnessOptions::output_of(const Task& task) const {
+    if (is_in_place()) return expanded(into_, task).file;
     const std::string path = files_->further(kOption, output_, task);
     if (!NamePattern(output_).uses("format")) return path;
-    return files_->further(kOption, output_, task, name_of(kRoughnessFormatNames, format_in(container_for(path))));
+    const auto format = format_in(container_for(path), task);
+    if (!format) throw UsageError("--roughness-out: {format} needs --roughness-format beside --roughness-into");
+    return files_->further(kOption, output_, task, name_of(kRoughnessFormatNames, *format));
 }
 
-Format RoughnessOptions::format_in(Container container) const {
-    if (format_) return *format_;
+RoughnessUse RoughnessOptions::use_of(const Task& task) const {
+    return task.engine == nullptr ? RoughnessUse::any : task.engine->roughness;
+}
+
+RoughnessParts RoughnessOptions::parts_for(const Task& task) const {
+    const RoughnessUse use = use_of(task);
+    if (into_.file.empty())
+        return use == RoughnessUse::green ? kGreen : use == RoughnessUse::smoothness ? kSmoothness : kEverywhere;
+    RoughnessParts parts;
+    parts.fill(RoughnessPart::kept);
+    const bool is_smooth = use == RoughnessUse::smoothness && into_.channel == HeightChannel::a;
+    parts[place_of(into_.channel)] = is_smooth ? RoughnessPart::smoothness : RoughnessPart::roughness;
+    return parts;
+}
+
+std::optional<Format> RoughnessOptions::format_in(Container container, const Task& task) const {
+    if (format_) return format_;
+    if (!into_.file.empty()) return std::nullopt;
+    const RoughnessUse use = use_of(task);
     const Format normals = encoding_info(default_encoding(container)).format;
     if (container == Container::astc) return normals;
     const FormatInfo info = format_info(normals);
-    return info.has_blocks() ? Format::bc4_unorm : *format_of(info.sample, info.bits, 1);
+    const bool is_for_phones = task.engine != nullptr && task.engine->format == Encoding::eac_rg11;
+    if (info.has_blocks()) {
+        if (use == RoughnessUse::smoothness) return Format::rgba8_unorm;
+        return is_for_phones && container == Container::ktx2 ? Format::eac_rg11_unorm : Format::bc5_unorm;
+    }
+    // One channel is grey: the same in R, G and B.
+    const int channels = use == RoughnessUse::smoothness ? 4 : use == RoughnessUse::green ? 3 : 1;
+    return *format_of(info.sample, info.bits, channels);
+}
+
+void RoughnessOptions::check_format(const Task& task, const std::string& path, Container container) const {
+    const std::optional<Format> format = format_in(container, task);
+    if (!format) return;
+    const auto name = name_of(kRoughnessFormatNames, *format);
+    if (!can_hold(container, *format)) {
+        throw UsageError(printable(path), fmt::format("{} files cannot hold roughness as {}",
+                                                      name_of(kContainerNames, container), name));
+    }
+    const RoughnessUse use = use_of(task);
+    const bool is_kept = !into_.file.empty();
+    if (!is_kept && use == RoughnessUse::any) return;
+    if (!is_kept && use == RoughnessUse::green && (holds_luminance(*format) || is_grey(container, *format))) return;
+    const std::size_t needed = is_kept ? place_of(into_.channel) : use == RoughnessUse::green ? 1 : 3;
+    if (static_cast<int>(needed) < format_info(*format).channels && !holds_luminance(*format)) return;
+    throw UsageError(
+        printable(path),
+        fmt::format("--roughness-format {} has no channel {} of its own, {}", name, "RGBA"[needed],
+                    is_kept ? std::string("into which it goes") : fmt::format("which {} reads", task.engine->name)));
 }
 
 void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
     if (!is_given()) return;
     for (const Task& task : tasks) {
+        if (is_in_place() && !task.origin.empty())
+            throw UsageError("--roughness-into", "replaces an input, so a manifest needs --roughness-out, too");
         const std::string path = output_of(task);
         const Container container = container_for(path);
-        const auto kind = name_of(kContainerNames, container);
-        if (!can_hold(container, format_in(container))) {
-            throw UsageError(printable(path), fmt::format("{} files cannot hold roughness as {}", kind,
-                                                          name_of(kRoughnessFormatNames, format_in(container))));
-        }
+        check_format(task, path, container);
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
-        throw UsageError(
-            printable(path),
-            fmt::format("{} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or {{level}}", kind));
+        throw UsageError(printable(path),
+                         is_in_place()
+                             ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, which "
+                                           "then holds what is kept, too",
+                                           name_of(kContainerNames, container))
+                             : fmt::format("{} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or "
+                                           "{{level}}",
+                                           name_of(kContainerNames, container)));
     }
 }
 
@@ -109,13 +263,24 @@ RoughnessFile RoughnessOptions::file(Job& job, Effort effort) const {
     file.output = output_of(job.task);
     file.level_names = level_names(file.output);
     file.container = container_for(file.output);
-    file.format = format_in(file.container);
+    file.format = format_in(file.container, job.task);
     file.effort = effort;
     file.model = model_;
-    file.own = value_;
-    if (input_.file.empty()) return file;
+    file.own = value_.value_or(0.0f);
+    file.parts = parts_for(job.task);
+    const bool has_one = file.format && (holds_luminance(*file.format) || format_info(*file.format).channels == 1);
+    if (has_one && into_.file.empty()) file.parts = kEverywhere;
+    if (!into_.file.empty())
+        file.kept = [this, &job] { return read_kept(expanded(into_, job.task), job.read_options); };
+    if (input_of(job.task).file.empty()) return file;
     file.map = [this, &job]() -> Result<Plane<float>> {
-        return read_channel(job, input_of(job.task), {job.threads(), {}});
+        const bool is_smooth = input_.file.empty() && parts_for(job.task)[3] == RoughnessPart::smoothness;
+        Result<Plane<float>> map = read_roughness(job, input_of(job.task));
+        if (!map || !is_smooth) return map;
+        for (int j = 0; j < map->extent().height; ++j) {
+            for (int i = 0; i < map->extent().width; ++i) map->at(i, j) = 1.0f - map->at(i, j);
+        }
+        return map;
     };
     return file;
 }
@@ -133,7 +298,10 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
         map["output"] = written;
     else
         map["output"] = path;
-    map["format"] = name_of(kRoughnessFormatNames, format_in(container_for(path)));
+    const bool is_named = std::any_of(std::begin(kRoughnessFormatNames), std::end(kRoughnessFormatNames),
+                                      [&](const auto& row) { return row.value == packed.roughness_format; });
+    map["format"] = is_named ? name_of(kRoughnessFormatNames, packed.roughness_format)
+                             : name_of(kFormatNames, packed.roughness_format);
     map["model"] = name_of(kRoughnessModelNames, model_);
     map["bytes"] = packed.roughness_bytes;
     job.report["roughness"] = std::move(map);

@@ -83,7 +83,7 @@ std::vector<Finding> CheckDocuments::accept(CheckReport& report) {
 
 Result<void> CheckDocuments::add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh, const ReadTexture& read) {
     if (has_page()) {
-        if (auto added = add_to_page(job, judged.report, judged.require, mesh, read); !added) return added;
+        if (auto added = add_to_page(job, judged, mesh, read); !added) return added;
     }
     const std::lock_guard lock(mutex_);
     if (!sarif_.empty() || !junit_.empty()) reports_.insert_or_assign(title_of(judged.report), judged);
@@ -95,9 +95,12 @@ void CheckDocuments::depends_on(const std::string& file) {
     more_sources_.insert(file);
 }
 
-Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, const Requirements& require,
-                                         const MapOnMesh* mesh, const ReadTexture& read) {
-    for (const Finding& finding : report.findings) page_.explain(*finding.rule);
+Result<void> CheckDocuments::add_to_page(Job& job, const JudgedReport& judged, const MapOnMesh* mesh,
+                                         const ReadTexture& read) {
+    const CheckReport& report = judged.report;
+    for (const std::vector<Finding>* findings : {&report.findings, &judged.waived}) {
+        for (const Finding& finding : *findings) page_.explain(*finding.rule);
+    }
     std::optional<HtmlMap> map;
     if (!report.error) {
         const auto texture = read();
@@ -110,7 +113,7 @@ Result<void> CheckDocuments::add_to_page(Job& job, const CheckReport& report, co
         else if (drawn.error().code != ErrorCode::bad_option)
             return drawn.error();
     }
-    page_.add(title_of(report), check_entry(report, require, map ? &*map : nullptr));
+    page_.add(title_of(report), check_entry(report, judged.require, judged.waived, map ? &*map : nullptr));
     return {};
 }
 

@@ -59,8 +59,8 @@ public:
 
 private:
     [[nodiscard]] std::vector<std::string> written() const;
-    [[nodiscard]] Result<void> add_to_page(Job& job, const CheckReport& report, const Requirements& require,
-                                           const MapOnMesh* mesh, const ReadTexture& read);
+    [[nodiscard]] Result<void> add_to_page(Job& job, const JudgedReport& judged, const MapOnMesh* mesh,
+                                           const ReadTexture& read);
 
     std::string page_path_, sarif_, junit_, baseline_path_, baseline_written_, depfile_;  // or empty
     std::vector<std::string> sources_;  // what the documents are made from

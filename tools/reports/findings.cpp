@@ -51,12 +51,11 @@ std::string findings_text(const CheckReport& report, const Requirements& require
                             name_of(kSeverityNames, finding.severity), rule.id, rule.name, printable(statement));
         const Fix fix = fix_of(finding, report, require);
         if (fix.text.empty()) continue;
-        if (fix.is_command && fix.text == told) {
-            text += "    fix: the same command\n";
-            continue;
-        }
+        const bool is_told = fix.is_command && fix.text == told;
         if (fix.is_command) told = fix.text;
-        text += fmt::format("    {}: {}\n", fix.is_command ? "fix" : "advice", fix.text);
+        text += is_told ? "    fix: the same command\n"
+                        : fmt::format("    {}: {}\n", fix.is_command ? "fix" : "advice", fix.text);
+        if (!fix.advice.empty()) text += fmt::format("    advice: {}\n", fix.advice);
     }
     return text;
 }
@@ -73,10 +72,10 @@ std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
-        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees; usual for a "
-        "map "
-        "of this detail that was baked for its mesh and decoder: a mean under {:.1f}\n",
-        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst, seams.usual);
+        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees: {} (a map of "
+        "this detail that was baked for its mesh and decoder has a mean under {:.1f})\n",
+        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst,
+        seams.mean < seams.usual ? "as usual" : "more than usual", seams.usual);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {
@@ -122,6 +121,7 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
         if (finding.has_texel) item["texel"] = {finding.column, finding.row};
         const Fix fix = fix_of(finding, report, require);
         if (!fix.text.empty()) item[fix.is_command ? "fix" : "advice"] = fix.text;
+        if (!fix.advice.empty()) item["advice"] = fix.advice;
         json["findings"].push_back(std::move(item));
     }
     json["explained"] = report.explained;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -92,10 +93,49 @@ bool is_any_of(std::string_view id, std::initializer_list<std::string_view> ids)
     return false;
 }
 
+// The rules about a direction of green that the texels contradict.
+bool is_about_mirrors(std::string_view id) { return is_any_of(id, {"N401", "N404"}); }
+
+// Whether the heights show that red is mirrored, and not green.
+bool is_red_mirrored(std::string_view id, const CheckReport& report) {
+    return is_about_mirrors(id) && report.pair && report.pair->decides() && report.pair->strength < 0.0;
+}
+
+// Turns red over, and nothing else: all slopes, and then green back.
+constexpr std::string_view kRedFix = "scale-normals FILE --scale -1 --y-in MEASURED --y OTHER --format SAME -o FIXED";
+
+// The command of a rule, in the form of Rule::fix.
+std::string_view words_of(const Rule& rule, const CheckReport& report) {
+    return is_red_mirrored(rule.id, report) ? kRedFix : rule.fix;
+}
+
 // True if the texels measure in the direction that the command would state.
 bool is_clear(std::string_view id, const CheckReport& report, const Requirements& require) {
     if (id == "N112") return report.y.y && report.y.y == require.y;
-    return !is_any_of(id, {"N401", "N404"}) || report.y.y.has_value();
+    return !is_about_mirrors(id) || report.y.y.has_value();
+}
+
+// The same encoding with alpha.
+std::optional<Encoding> with_alpha(Encoding encoding) {
+    switch (encoding) {
+        case Encoding::rgb8:
+        case Encoding::rgba8: return Encoding::rgba8;
+        case Encoding::rgb16:
+        case Encoding::rgba16: return Encoding::rgba16;
+        case Encoding::half:
+        case Encoding::rgba16f: return Encoding::rgba16f;
+        case Encoding::float_:
+        case Encoding::rgba32f: return Encoding::rgba32f;
+        default: return std::nullopt;
+    }
+}
+
+// Whether the command can carry along what the other channels hold: alpha, beside x, y and z.
+bool carries_others(const Rule& rule, const CheckReport& report) {
+    const bool is_alpha =
+        report.swizzle[0] == Component::x && report.swizzle[1] == Component::y && report.swizzle[2] == Component::z;
+    const bool drops = rule.fix.find("--drop") != std::string_view::npos;
+    return is_alpha && !drops && !is_any_of(rule.id, {"N108", "N208", "N210"});
 }
 
 // What the file becomes; none if no command writes that.
@@ -108,6 +148,11 @@ std::optional<Target> target_of(std::string_view id, const CheckReport& report, 
     if (id == "N108" || (encoding && require.encoding)) encoding = require.encoding;
     if (id == "N208" && encoding) encoding = Encoding::half;
     if (!encoding) return std::nullopt;
+    if (report.more_data) {
+        encoding = with_alpha(*encoding);
+        const std::optional<Container> own = container_of(report.file);
+        if (!encoding || !own || !can_hold(*own, *encoding)) return std::nullopt;
+    }
     const bool builds = is_any_of(id, {"N103", "N109", "N501", "N502", "N503", "N504"}) && require.levels != 1;
     return target_for(report.file, *encoding, builds || report.levels > 1);
 }
@@ -128,7 +173,7 @@ struct FixCommand {
 
 FixCommand command_of(const Rule& rule, const CheckReport& report) {
     FixCommand command;
-    for (const std::string& word : split(std::string(rule.fix), ' ')) {
+    for (const std::string& word : split(std::string(words_of(rule, report)), ' ')) {
         if (command.program.empty())
             command.program = word;
         else if (word.starts_with("-"))
@@ -163,7 +208,8 @@ void join_commands(FixCommand& command, const FixCommand& other) {
 
 // Whether one command can do this and other things: mip-normals does all that pack-normals does.
 bool can_be_joined(const Finding& finding, const CheckReport& report) {
-    if (!is_command(*finding.rule)) return false;
+    if (!is_command(*finding.rule) || is_red_mirrored(finding.rule->id, report)) return false;
+    if (report.more_data && !carries_others(*finding.rule, report)) return false;
     const std::string program = command_of(*finding.rule, report).program;
     return (program == "pack-normals" || program == "mip-normals") && finding.rule->id != "N108";
 }
@@ -185,11 +231,38 @@ std::vector<const Finding*> fixed_together(const Finding& finding, const CheckRe
 
 }  // namespace
 
+namespace {
+
+std::string filled_in(std::string fix, const Target& target, const CheckReport& report, const Requirements& require) {
+    std::string same(name_of(kEncodingNames, target.encoding));
+    if (format_info(encoding_info(target.encoding).format).has_blocks()) same += " --effort best";
+    const YAxis measured = report.y.y.value_or(YAxis::up);
+    replace_word(fix, "SAME", same);
+    replace_word(fix, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
+    replace_word(fix, "MEASURED", name_of(kYAxisNames, measured));
+    replace_word(fix, "OTHER", name_of(kYAxisNames, measured == YAxis::up ? YAxis::down : YAxis::up));
+    replace_word(fix, "LEVELS", levels_text(require));
+    replace_word(fix, "FIXED", "FIXED" + extension_of(target.container));
+    replace_word(fix, "FILE", shell_file(report.file));  // last, because a name may contain the words above
+    return fix;
+}
+
+// What to do if green is right and red is mirrored, as long as no heights have shown which.
+std::string mirror_advice(std::string_view id, const Target& target, const CheckReport& report,
+                          const Requirements& require) {
+    if (!is_about_mirrors(id) || (report.pair && report.pair->decides())) return {};
+    return "If dents become bumps, red is mirrored instead, as in a picture that was flipped: " +
+           filled_in(std::string(kRedFix), target, report, require) +
+           "; check-normals --height FILE decides between the two, and so does a look at the occlusion map or the mesh";
+}
+
+}  // namespace
+
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
-    if (report.more_data) {
+    if (report.more_data && !(carries_others(*finding.rule, report) && target_of(id, report, require))) {
         return {
             "No command is printed, because it would lose what the other channels hold. Save that first with "
             "unpack-normals --alpha-out or --blue-out; pack-normals --format rgba8 keeps alpha."};
@@ -219,15 +292,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     // Only 8 bits have neither NaN nor values that a file may state to be no data.
     if (id == "N210" && format_info(report.format).bits > 8) fix += " --fill-invalid";
     fix += " --format SAME -o FIXED";
-    std::string same(name_of(kEncodingNames, target->encoding));
-    if (format_info(encoding_info(target->encoding).format).has_blocks()) same += " --effort best";
-    replace_word(fix, "SAME", same);
-    replace_word(fix, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
-    replace_word(fix, "MEASURED", name_of(kYAxisNames, report.y.y.value_or(YAxis::up)));
-    replace_word(fix, "LEVELS", levels_text(require));
-    replace_word(fix, "FIXED", "FIXED" + extension_of(target->container));
-    replace_word(fix, "FILE", shell_file(report.file));  // last, because a name may contain the words above
-    return {fix, true};
+    return {filled_in(std::move(fix), *target, report, require), true, mirror_advice(id, *target, report, require)};
 }
 
 }  // namespace tex::cli

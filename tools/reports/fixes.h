@@ -12,6 +12,7 @@ namespace tex::cli {
 struct Fix {
     std::string text;  // a command or a sentence; empty if there is neither
     bool is_command = false;
+    std::string advice = {};  // beside a command: what it depends on, and the command to take otherwise; may be empty
 };
 
 // The command that fixes the finding in this file and keeps everything else: the container, the bits of each sample,

@@ -50,6 +50,7 @@ std::string github_text(const CheckReport& report, const Requirements& require) 
                                           printable(statement_of(finding)));
         const Fix fix = fix_of(finding, report, require);
         if (!fix.text.empty()) message += fmt::format("\n{}{}", fix.is_command ? "Fix: " : "", fix.text);
+        if (!fix.advice.empty()) message += "\n" + fix.advice;
         text += line_of(command_of(finding.severity), report.file,
                         fmt::format("{} {}", finding.rule->id, finding.rule->name), message);
     }

@@ -69,6 +69,7 @@ std::string finding_html(const Finding& finding, const CheckReport& report, cons
     const Fix fix = fix_of(finding, report, require);
     const char* form = fix.is_command ? "<p class=\"fix\">Fix: <code>{}</code></p>\n" : "<p class=\"fix\">{}</p>\n";
     if (!fix.text.empty()) html += fmt::format(fmt::runtime(form), html_text(fix.text));
+    if (!fix.advice.empty()) html += fmt::format("<p class=\"fix\">{}</p>\n", html_text(fix.advice));
     return html + "</li>\n";
 }
 
@@ -132,7 +133,8 @@ std::string level_row(const ComparedLevel& level) {
 
 std::vector<std::string> check_columns() { return {"findings", "format", "extent", "levels", "green"}; }
 
-HtmlEntry check_entry(const CheckReport& report, const Requirements& require, HtmlMap* map) {
+HtmlEntry check_entry(const CheckReport& report, const Requirements& require, const std::vector<Finding>& waived,
+                      HtmlMap* map) {
     HtmlEntry entry;
     entry.title = title_of(report);
     entry.row = "<td>";
@@ -146,9 +148,10 @@ HtmlEntry check_entry(const CheckReport& report, const Requirements& require, Ht
     }
     if (report.findings.empty()) {
         entry.words = report.error ? "error" : "clean";
-        entry.row += report.error ? chip(Severity::error, report.error->reason)
-                                  : "<span class=\"chip clean\">nothing found</span>";
+        if (report.error) entry.row += chip(Severity::error, report.error->reason);
+        if (!report.error && waived.empty()) entry.row += "<span class=\"chip clean\">nothing found</span>";
     }
+    if (!waived.empty()) entry.row += fmt::format("<span class=\"chip clean\">{} accepted</span>", waived.size());
     entry.row += "</td>";
     if (report.error) {
         entry.row += "<td></td><td></td><td></td><td></td>";
@@ -165,7 +168,13 @@ HtmlEntry check_entry(const CheckReport& report, const Requirements& require, Ht
         for (const Finding& finding : report.findings) entry.body += finding_html(finding, report, require);
         entry.body += "</ul>\n";
     } else if (!report.error) {
-        entry.body += "<p class=\"nothing\">Nothing found.</p>\n";
+        entry.body += waived.empty() ? "<p class=\"nothing\">Nothing found.</p>\n"
+                                     : "<p class=\"nothing\">Nothing found that the baseline does not accept.</p>\n";
+    }
+    if (!waived.empty()) {
+        entry.body += "<p>Accepted by the baseline:</p>\n<ul class=\"findings\">\n";
+        for (const Finding& finding : waived) entry.body += finding_html(finding, report, require);
+        entry.body += "</ul>\n";
     }
     if (map != nullptr) entry.maps.push_back(std::move(*map));
     return entry;

@@ -77,8 +77,10 @@ private:
 };
 
 // The columns and an entry of check-normals. `map` is null for a file that could not be decoded.
+// `waived` are findings that a baseline accepts.
 [[nodiscard]] std::vector<std::string> check_columns();
-[[nodiscard]] HtmlEntry check_entry(const CheckReport& report, const Requirements& require, HtmlMap* map);
+[[nodiscard]] HtmlEntry check_entry(const CheckReport& report, const Requirements& require,
+                                    const std::vector<Finding>& waived, HtmlMap* map);
 
 // One level that compare-normals compared.
 struct ComparedLevel {

@@ -71,8 +71,9 @@ Json result_json(const CheckReport& report, const Finding& finding, const Requir
     json["level"] = level_of(finding.severity);
     const Fix fix = fix_of(finding, report, require);
     json["message"] =
-        text_json(fmt::format("{}{}{}{}{}{}", report.map, report.map.empty() ? "" : ": ", statement_of(finding),
-                              fix.text.empty() ? "" : " ", fix.is_command ? "Fix: " : "", fix.text));
+        text_json(fmt::format("{}{}{}{}{}{}{}{}", report.map, report.map.empty() ? "" : ": ", statement_of(finding),
+                              fix.text.empty() ? "" : " ", fix.is_command ? "Fix: " : "", fix.text,
+                              fix.advice.empty() ? "" : ". ", fix.advice));
     json["locations"] = Json::array({location_json(report)});
     const int level = finding.regions.empty() ? 0 : finding.regions.front().level;
     json["partialFingerprints"] = {{"rule/v1", fmt::format("{}:{}:{}", finding.rule->id, level, title_of(report))}};

@@ -41,29 +41,34 @@ constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, astc_4x4, astc
 // Engines that compress textures themselves get a picture that is not compressed: a second lossy step would add its
 // error to the first one's, and the engine would read x and y from the wrong channels of DXT5nm and BC5.
 constexpr Engine kEngines[] = {
+    // docs.unity3d.com/Manual/StandardShaderMaterialParameterSmoothness.html: smoothness is alpha of the metallic map,
+    // and
+    // HDRP's mask map has occlusion in green besides.
     // docs.unity3d.com/Manual/texture-type-normal-map.html: Flip Green Channel is for other conventions than Unity's.
     // unity.huh.how/textures/normal-map-format.html: "Unity uses Y+ normal maps, known as OpenGL format".
     {"unity", png, rgb8, YAxis::up, false, "",
      "The importer compresses for each platform and builds the levels. It expects x, y and z in R, G and B and green "
      "up.",
-     kUnityTypes, kUnityEncodings},
+     kUnityTypes, kUnityEncodings, RoughnessUse::smoothness},
     // Texture editor: Compression Settings, Normalmap (BC5), and Flip Green Channel for maps with green up.
     {"unreal", png, rgb8, YAxis::down, false, "",
      "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX.", kPictures, kRgb},
+    // StandardMaterial3D, roughness_texture_channel: an ORM material reads green.
     // docs.godotengine.org, Importing images: PNG has 8 bits after import; StandardMaterial3D: X+, Y+ and Z+.
     {"godot", png, rgb8, YAxis::up, false, "",
      "The importer compresses, builds the levels and keeps 8 bits of a PNG file. It expects green up, as in OpenGL.",
-     kGodotTypes, kGodotEncodings},
+     kGodotTypes, kGodotEncodings, RoughnessUse::green},
+    // glTF 2.0 specification, 3.9.2: metalness is sampled from blue, roughness from green, occlusion from red.
     // glTF 2.0 specification, 3.8.3: images are PNG or JPEG; 3.9.3: normalTexture is RGB, +Y is up.
     {"gltf", png, rgb8, YAxis::up, false, "",
      "The core specification allows PNG and JPEG, of which only PNG is lossless; it requires x, y and z in R, G and B "
      "and green up.",
-     kGltfTypes, kRgbCodes},
+     kGltfTypes, kRgbCodes, RoughnessUse::green},
     // normal_fragment_maps.glsl.js reads xyz; RG and BC5 need a release of 2026 (three.js pull request 32448).
     {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
-     kThreeTypes, kRgb},
+     kThreeTypes, kRgb, RoughnessUse::green},
     // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; NormalMapNode.js
     // for
     // WebGPURenderer (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
@@ -71,7 +76,7 @@ constexpr Engine kEngines[] = {
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
      "for desktop GPUs, --format eac-rg11 for others. The core of glTF does not allow such files in a model (issue "
      "2602 of glTF).",
-     kThreePackedTypes, kThreePackedEncodings},
+     kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green},
     // Blender's manual, Normal Map node: OpenGL convention by default, Non-Color images.
     {"blender", png, rgb16, YAxis::up, false, "",
      "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up.",
@@ -80,7 +85,7 @@ constexpr Engine kEngines[] = {
     {"bevy", ktx2, bc5, YAxis::up, true, "",
      "Bevy loads GPU formats as they are and builds no levels. StandardMaterial rebuilds z for BC5 (not for DXT5nm or "
      "signed BC5) and expects green up. BC5 is for desktop GPUs.",
-     kBevyTypes, kBevyEncodings},
+     kBevyTypes, kBevyEncodings, RoughnessUse::green},
     // ImageBuilder.settings maps _normal to the preset Normals (BC5 signed, box filter, R and G swapped on the way).
     // No documentation states y; pull request 18082 turned on Flip Y for Sponza's OpenGL maps.
     {"o3de", png, rgb8, YAxis::down, false, "_normal",

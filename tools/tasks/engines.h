@@ -15,6 +15,13 @@
 
 namespace tex::cli {
 
+// Where materials read roughness.
+enum class RoughnessUse {
+    any,         // in whichever channel the user connects
+    green,       // of a texture with occlusion in red and metalness in blue
+    smoothness,  // 1 - roughness, in alpha of a texture with metalness in red and occlusion in green
+};
+
 // One row of the table.
 struct Engine {
     std::string_view name;  // "unity"
@@ -27,6 +34,7 @@ struct Engine {
     // What it reads besides, for check-normals.
     std::span<const Container> types;
     std::span<const Encoding> encodings;
+    RoughnessUse roughness = RoughnessUse::any;
 };
 
 [[nodiscard]] std::span<const Engine> engines();

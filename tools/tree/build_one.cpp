@@ -237,6 +237,8 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     }
     outcome.warnings.insert(outcome.warnings.end(), made->warnings.begin(), made->warnings.end());
     outcome.remarks.insert(outcome.remarks.end(), made->remarks.begin(), made->remarks.end());
+    outcome.text += made->text;
+    if (!made->bumpiness.is_null()) outcome.report["bumpiness"] = made->bumpiness;
     if (outcome.code == ExitCode::findings) {
         outcome.report["status"] = "refused";
         return true;
@@ -326,6 +328,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
         outcome.outputs.clear();
         outcome.warnings.clear();
         outcome.remarks.clear();
+        outcome.text.clear();
     }
     return Error{ErrorCode::io, contents_.path(task.input),
                  "this file, or one that its rule reads, changes while it is read"};

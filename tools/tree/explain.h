@@ -11,10 +11,11 @@
 
 namespace tex::cli {
 
-// The rule for `file`, an input or an output relative to the root: every setting, where it comes from, and the command
-// lines that do the same; and the rules that read it for other textures. Throws UsageError if no rule makes or reads
+// The rule for `file`, an input or an output relative to the root: every setting as the run uses it, where it comes
+// from, and the command lines that do the same; and the rules that read it for other textures. Throws UsageError if no
+// rule makes or reads
 // it.
 [[nodiscard]] std::string explanation_of(const std::string& file, const std::vector<Recipe>& recipes,
-                                         const WorkList& work);
+                                         const WorkList& work, Console& console);
 
 }  // namespace tex::cli

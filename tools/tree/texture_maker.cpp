@@ -27,8 +27,10 @@ public:
         job.shared_maps = settings_.shared;
         return job;
     }
-    void add_warnings(Made& made) const {
+    void add_words(Made& made) const {
         for (const Job& job : jobs_) {
+            made.text += job.text();
+            if (job.report.contains("bumpiness")) made.bumpiness = job.report["bumpiness"];
             made.warnings.insert(made.warnings.end(), job.warnings().begin(), job.warnings().end());
             made.remarks.insert(made.remarks.end(), job.remarks().begin(), job.remarks().end());
         }
@@ -160,7 +162,8 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
                 return done.error();
         }
     }
-    jobs.add_warnings(made);
+    jobs.add_words(made);
+    made.text.clear();  // what transfers say of each map
     return made;
 }
 
@@ -244,7 +247,7 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
     Made made;
     made.report = std::move(*done);
     made.packs = std::move(packs);
-    jobs.add_warnings(made);
+    jobs.add_words(made);
     for (std::size_t k = 0; k < wanted.size(); ++k)
         made.files.push_back(files_of(*tasks[k], wanted[k].path, made.report.levels));
     return made;
@@ -281,6 +284,8 @@ Result<Made> make_one_after_the_other(const Recipe& recipe, const std::string& i
             made.files[places[k]] = std::move(some->files[k]);
             if (k < some->packs.size()) made.packs[places[k]] = some->packs[k];
         }
+        if (group == 0) made.text = std::move(some->text);  // the others read the same heights
+        if (made.bumpiness.is_null()) made.bumpiness = std::move(some->bumpiness);
         some->report.bytes += made.report.bytes;
         made.report = std::move(some->report);
         add_new(std::move(some->warnings), made.warnings);

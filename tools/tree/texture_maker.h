@@ -11,6 +11,7 @@
 
 #include <tex/pipeline.h>
 
+#include "cli/json.h"
 #include "options/run.h"
 #include "tree/recipe.h"
 
@@ -31,6 +32,8 @@ struct Made {
     std::vector<std::vector<std::string>> files;  // of each output that was asked for
     std::vector<PackOptions> packs;               // the same, if they are textures
     std::vector<FileWarning> warnings, remarks;   // as in Job
+    std::string text;                             // that the commands print
+    Json bumpiness;                               // with which heights were baked, as bake-normals reports it
 };
 
 // One output to make: its place in the recipe, and the path of its file (with kLevelMark if each level has its own).

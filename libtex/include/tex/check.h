@@ -212,12 +212,15 @@ struct Finding {
     int column = 0, row = 0;
 };
 
-// The direction of green, from the curl of the slopes: +1 is up, -1 is down.
+// The direction of green, from the curl of the slopes. It shows that one of red and green is mirrored, but not which:
+// y assumes that red points to the right. Heights that decide (PairEvidence) replace y.
 struct YEvidence {
-    double correlation = 0.0;
-    double confidence = 0.5;
-    std::optional<YAxis> y;  // nullopt: undecidable
+    double correlation = 0.0;  // +1: up, -1: down; 0.2 is enough, if the regions agree
+    double confidence = 0.5;   // that its sign is not chance, 0.5 to 1, by how far the regions of the map agree
+    std::optional<YAxis> y;    // nullopt: undecidable, or parts of the map differ (N402)
 };
+
+inline constexpr double kHeightsFollow = 0.6;  // PairEvidence::correlation of heights that belong to the map
 
 // How the normals follow from the height map: slope = strength x difference of heights.
 struct PairEvidence {
@@ -225,6 +228,10 @@ struct PairEvidence {
     double strength = 0.0;     // height of value 1 in texel widths; below 0: white is low
     YAxis y = YAxis::up;
     int offset_x = 0, offset_y = 0;  // texels by which the normals are to the right of and below the heights
+
+    // Whether the heights are those of the map: then y is right, and a strength below 0 means that red points left if y
+    // is not what it ought to be, or else that white is low.
+    [[nodiscard]] bool decides() const { return correlation >= kHeightsFollow && offset_x == 0 && offset_y == 0; }
 };
 
 // How well the map fits the mesh: the angles in degrees between the decoded normals on both sides of UV seams. Each

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -126,6 +127,7 @@ struct BakeFileReport {
     Strength strength;              // with which it was baked
     bool is_stated = false;         // the file states this strength
     float usual_slope = 0.0f;       // the 99th percentile of the slopes of the base level, or of some rows of it
+    float auto_strength = 0.0f;     // what BakeFileOptions::auto_strength would find, or has found; 0: all is flat
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
@@ -155,17 +157,29 @@ struct BakeFileReport {
                                                        Container container, const BakeFileOptions& options = {},
                                                        const Execution& execution = {});
 
+// What a channel of a roughness file holds. `smoothness` is 1 - roughness. `kept`: what RoughnessFile::kept has there,
+// averaged in smaller levels that it lacks; 1 if it has no such channel.
+enum class RoughnessPart { roughness, smoothness, zero, one, kept };
+
+using RoughnessParts = std::array<RoughnessPart, 4>;  // of R, G, B and A, as far as the format has them
+
 // A roughness map written beside the normal map: build_roughness_chain() of the base level, with the same number of
-// levels (one, if the file holds one), pack_roughness(), write_texture().
+// levels (one, if the file holds one), write_texture(). The format is one of pack_roughness(); BC5 or EAC RG11; or one
+// of two to four channels of 8 or 16 bits or floats, without signs. ASTC holds roughness in R, G and B.
 struct RoughnessFile {
     std::string output;
     LevelNames level_names;  // as in BakeFileOptions
     Container container = Container::dds;
-    Format format = Format::bc4_unorm;
+    std::optional<Format> format = Format::bc4_unorm;
     Effort effort = Effort::normal;
     RoughnessModel model = RoughnessModel::toksvig;
     float own = 0.0f;                           // the material's roughness, the same everywhere
     std::function<Result<Plane<float>>()> map;  // if set, returns the roughness map, which replaces `own`
+    RoughnessParts parts = {RoughnessPart::roughness, RoughnessPart::roughness, RoughnessPart::roughness,
+                            RoughnessPart::one};
+    // If set, returns the texture that holds what is kept. It has the extent of the normal map. Without `format`, the
+    // file has its format; if that is none of the above: unsupported.
+    std::function<Result<Texture>()> kept;
 };
 
 // What pack_file() does: read_normals(), scale() if `scale` is set, build_mip_chain() if `mip` is set, pack(),
@@ -205,6 +219,7 @@ struct PackFileReport {
     int levels = 1;
     std::size_t bytes = 0;  // of the output; the sum over all its files
     std::size_t roughness_bytes = 0;
+    Format roughness_format = Format::bc4_unorm;  // if a roughness file was written
     PackOptions pack;
     SourceInfo source;
     std::optional<RdoReport> rdo;  // of the first file whose blocks are optimised
@@ -214,8 +229,8 @@ struct PackFileReport {
 // another encoding, with newly built levels, scaled, or reduced to one of its levels.
 //
 // Levels are processed one after the other. Memory holds a few rows, the additional data that bake_file() lists for
-// interlaced PNGs and for outputs, and the plane that RoughnessFile::map returns. A picture that can hold only one
-// level gets the base level. The roughness files appear after the normal map files.
+// interlaced PNGs and for outputs, and what RoughnessFile::map and RoughnessFile::kept return. A picture that can hold
+// only one level gets the base level. The roughness files appear after the normal map files.
 //
 // What the texels alone can tell is settled before the first row is written: the layout of four channels without a
 // swizzle, the order of x and y in BC5 (Texture::order_open), the range of floats, z from 0 to 1, and y if it is to be
@@ -320,11 +335,12 @@ struct MapRead {
 struct StepsReport {
     Extent extent;  // of the base level
     int levels = 1;
-    std::size_t bytes = 0;          // of all outputs
-    PackOptions pack;               // of `output`
-    HeightReport heights;           // if the first step bakes
-    Strength strength;              // as in BakeFileReport, if the first step bakes
-    float usual_slope = 0.0f;       // this and the next as in BakeFileReport, if the only step bakes
+    std::size_t bytes = 0;     // of all outputs
+    PackOptions pack;          // of `output`
+    HeightReport heights;      // if the first step bakes
+    Strength strength;         // as in BakeFileReport, if the first step bakes
+    float usual_slope = 0.0f;  // this and the next two as in BakeFileReport, if the only step bakes
+    float auto_strength = 0.0f;
     std::int64_t steep_texels = 0;  // maps of floats hold all slopes
     std::vector<MapRead> maps;
 };

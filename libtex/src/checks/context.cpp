@@ -10,6 +10,7 @@
 #include <tex/format.h>
 #include <tex/pack.h>
 
+#include "checks/y_verdict.h"
 #include "formats/level_planes.h"
 #include "rows/other_rows.h"
 #include "rows/unpack_rows.h"
@@ -131,7 +132,10 @@ Result<void> measure(CheckContext& context) {
         std::min(1.0, context.curl.usable * texels / std::max(1.0, static_cast<double>(context.counts.texels)));
     context.y.correlation = context.curl.correlation;
     context.y.confidence = context.curl.confidence;
-    context.y.y = clear_y(context.curl);
+    YVerdict verdict =
+        verdict_of(context.curl, extent, [&stored](const Rect& part) { return slopes_of(stored, part); });
+    context.y.y = verdict.y;
+    context.mixed_y = std::move(verdict.mixed);
     return {};
 }
 

@@ -219,11 +219,4 @@ Result<Curl> measure_curl(const Stored& stored, const Execution& execution) {
     return join(parts);
 }
 
-std::optional<YAxis> clear_y(const Curl& curl) {
-    if (std::abs(curl.correlation) < kLeastCorrelation || curl.confidence < kLeastConfidence ||
-        curl.usable < kLeastUsable)
-        return std::nullopt;
-    return curl.correlation > 0.0 ? YAxis::up : YAxis::down;
-}
-
 }  // namespace tex::inline v1

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include <tex/types.h>
@@ -85,8 +84,5 @@ Curl measure_curl(Extent extent, const std::vector<Rect>& windows, const std::fu
 // exchanging them mirrors the structure onto itself.
 double diagonal_share(const Stored& stored);
 double diagonal_share(const std::vector<Slopes>& parts);
-
-// Where green points, if that is clear.
-std::optional<YAxis> clear_y(const Curl& curl);
 
 }  // namespace tex::inline v1

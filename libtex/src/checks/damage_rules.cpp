@@ -270,17 +270,21 @@ void check_banding(const Lattice& lattice, Findings& findings) {
 }
 
 void check_seam(const CheckContext& context, const Seam& seam, Findings& findings) {
-    if (seam.worst() < thresholds::kSeamRatio) return;
+    const SeamSteps* const steps = seam.worst_standing_out();
+    if (steps == nullptr || steps->ratio() < thresholds::kSeamRatio) return;
+    const auto codes = [](double step) { return decimal(127.5 * step, 1); };
     const Extent extent = context.stored.extent();
-    const bool right = seam.ratio_x > seam.ratio_y;
-    Finding& finding =
-        findings.add("N307", "the step across the " + std::string(right ? "left and right" : "top and bottom") +
-                                 " border is " + decimal(seam.worst(), 1) + " times nearly all steps inside");
-    finding.figure = seam.worst();
+    Finding& finding = findings.add(
+        "N307", "the mean step from the " +
+                    std::string(steps->of_columns ? "last column to the first" : "last row to the first") + " is " +
+                    codes(steps->border) + " codes of 8 bits; inside, 98 % of the steps between " +
+                    (steps->of_columns ? "columns" : "rows") + " are below " + codes(steps->usual) +
+                    ", and the largest is " + codes(steps->largest));
+    finding.figure = steps->ratio();
     finding.unit = "ratio";
     finding.confidence = 0.95;
-    finding.regions = {right ? Region{0, extent.width - 1, 0, 1, extent.height}
-                             : Region{0, 0, extent.height - 1, extent.width, 1}};
+    finding.regions = {steps->of_columns ? Region{0, extent.width - 1, 0, 1, extent.height}
+                                         : Region{0, 0, extent.height - 1, extent.width, 1}};
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "checks/kind.h"
 #include "checks/stored.h"
 #include "checks/texel_counts.h"
+#include "checks/y_verdict.h"
 
 namespace tex::inline v1 {
 
@@ -33,7 +34,9 @@ struct CheckContext {
     KindMeasure kind_measure = {};  // without texels if lengths do not matter, or values are components
     TexelCounts counts = {};
     Curl curl = {};
-    YEvidence y = {};  // what the curl shows
+    YEvidence y = {};  // what the curl shows, or the heights where they decide
+    std::optional<MixedY> mixed_y = {};
+    std::optional<PairEvidence> pair = {};
 };
 
 class Findings {

@@ -9,7 +9,6 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr int kReach = 3;           // the greatest shift to look for, in texels
-constexpr double kFollows = 0.6;    // correlation
 constexpr double kBetterBy = 0.05;  // a shift must be better than no shift by this much
 
 // Sums over texels that compare slopes (p, q) with differences (u, v) of the heights.
@@ -43,6 +42,13 @@ void add_window(const Slopes& slopes, Rect window, const Plane<float>& height, i
             fit.qv += q * v;
         }
     }
+}
+
+// Where green ought to point, if anything says so. Where it does not, red or green is mirrored, and not the heights
+// (N401, N404).
+std::optional<YAxis> wanted_y(const CheckContext& context) {
+    if (context.options.require.y) return context.options.require.y;
+    return context.texture.y_known ? std::optional(context.texture.y_axis) : std::nullopt;
 }
 
 }  // namespace
@@ -90,11 +96,11 @@ std::optional<PairEvidence> check_pair_rules(const CheckContext& context, Findin
         finding.unit = "correlation";
         finding.confidence = 0.95;
     };
-    if (pair.correlation < kFollows) {
+    if (pair.correlation < kHeightsFollow) {
         add("N601", "slopes do not follow the heights");
     } else if (pair.offset_x != 0 || pair.offset_y != 0) {
         add("N601", "slopes follow the heights only when shifted");
-    } else if (pair.strength < 0.0) {
+    } else if (pair.strength < 0.0 && pair.y == wanted_y(context).value_or(pair.y)) {
         add("N602", "slopes follow the inverted heights");
     }
     return pair;

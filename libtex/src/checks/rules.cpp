@@ -92,7 +92,9 @@ constexpr Rule kRules[] = {
     {"N207", "leaning", values, warning, true, "The map leans as a whole.",
      "The mean of the normals is more than 10 degrees off (0, 0, 1). A map over a flat surface has no lean; one "
      "channel was shifted, or the surface behind a bake was not flat.",
-     "", ""},
+     "Bake the map again over a flat surface. If an image editor changed its levels or colours, take the file from "
+     "before.",
+     ""},
     {"N208", "biased-flat", values, note, false, "Flat texels are biased.",
      "8 bits have no exact zero: code 127 means -0.0039, code 128 +0.0039. A quarter of the map or more is flat, and "
      "all of it leans the same way, by 0.32 degrees. Off by default, because nobody sees it; blended as detail, such a "
@@ -101,7 +103,7 @@ constexpr Rule kRules[] = {
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
-     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214"},
+     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N207 N213 N214 N215"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
@@ -119,7 +121,8 @@ constexpr Rule kRules[] = {
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "
      "world-space map.",
-     "", "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
+     "Convert it on its mesh with convert-normals --from object --mesh MESH, or bake it again in tangent space.",
+     "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
      "G "
@@ -181,10 +184,16 @@ constexpr Rule kRules[] = {
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
-     "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.", "",
+     "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.",
+     "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
+     "with "
+     "coarser steps: convert FILE -set colorspace RGB -colorspace sRGB FIXED.png",
      "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
-     "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.", "",
+     "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.",
+     "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
+     "with "
+     "coarser steps: convert FILE -set colorspace sRGB -colorspace RGB -set colorspace sRGB FIXED.png",
      "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
@@ -205,7 +214,11 @@ constexpr Rule kRules[] = {
      "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",
      "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304 N310"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
-     "The step across the border is larger than nearly all steps inside. Off unless tiles is required.", "", ""},
+     "Where the map repeats, x or y changes more from its last line to its first than between any two lines inside, by "
+     "a fifth or more, and at least 1.8 times as much as between 98 % of them. Joints between bricks or boards inside "
+     "are such steps, too, so "
+     "a border that lies in a joint is no seam. Off unless tiles is required.",
+     "Make the map from heights that repeat, and bake it with --wrap repeat; or do not require tiles of it.", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged, or the picture was turned.",
      "Either another channel than the third holds z (blue, green, red order), or the slopes have curl as they stand "
      "and "
@@ -238,14 +251,20 @@ constexpr Rule kRules[] = {
      "Bake the map at this size, or use the smaller one. Pixel art is meant to be so.", ""},
 
     // -- convention -------------------------------------------------------------------------------------------
-    {"N401", "wrong-y", convention, error, true, "Green points the other way than required.",
-     "The slopes of a height field have no curl; here they have none only if y is turned. y=up is OpenGL, Unity, "
-     "Blender, glTF; y=down is DirectX, Unreal. Decided if the correlation is 0.2 or more, the confidence 0.99 or "
-     "more, at least half of the texels hold normals, and x changes upwards and y to the right with 1.7 % of the "
-     "energy or more that they have along their own axes.",
+    {"N401", "wrong-y", convention, error, true, "Green or red points the other way than required.",
+     "Going around a closed path on a surface, slopes add up to zero. Those of this map do only if one of its channels "
+     "is turned over. Mostly it is green: y=up is OpenGL, Unity, Blender, glTF; y=down is DirectX, Unreal. But a "
+     "picture that was mirrored in an image editor, or whose red was inverted, fails in the same way, and turning "
+     "green over makes dents of its bumps. The slopes alone cannot tell the two apart. The height map can: "
+     "check-normals --height FILE. So can the occlusion map or the mesh, by eye: bumps are light in one and stand out "
+     "of the other. The correlation is 1 if the map fits y=up everywhere, -1 if it fits y=down; it counts from 0.2 or "
+     "-0.2 on, if parts of the map agree (confidence 0.99) and at least half of the texels hold normals. Lines and "
+     "bevels along the axes show nothing.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
-     "Maps of both conventions were pasted together. Judged only where most regions show one direction clearly.", "",
+     "Maps of both conventions were pasted together, or a part of the map was mirrored. No setting of y is right for "
+     "all of it, and --y-in measured refuses it. Judged only where most regions show one direction clearly.",
+     "Turn green over in one of the parts, where they were put together: the report shows which.",
      "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field, as many maps baked from high-poly meshes: the message names the "
@@ -253,7 +272,8 @@ constexpr Rule kRules[] = {
      "of N401 that it misses. Reported where y is required.",
      "Look at it with preview-normals, or state what its author says: --y-in up or --y-in down.", ""},
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",
-     "The file's own mark of y (KTX2, EXR) is not what the texels show.",
+     "The file's own mark of y (KTX2, EXR) is not what the texels show. Either the mark is wrong, or red is mirrored; "
+     "N401 explains why the slopes do not show which.",
      "pack-normals FILE --keep-length --y-in MEASURED --y MEASURED --format SAME -o FIXED", ""},
 
     // -- the smaller levels -------------------------------------------------------------------------------------

@@ -3,16 +3,34 @@
 
 #pragma once
 
+#include <array>
+
 #include "checks/stored.h"
 
 namespace tex::inline v1 {
 
-// The mean step of x or y from the last line to the first, divided by the 98th percentile of the mean steps between
-// lines inside. Every texel counts. 0 along an axis of fewer than 8 texels.
+inline constexpr double kOverJoints = 1.2;
+
+// Mean steps of one component between neighbouring lines.
+struct SeamSteps {
+    bool of_columns = false;  // from the right border to the left; otherwise from the bottom border to the top
+    double border = 0.0;      // from the last line to the first
+    double usual = 0.0;       // the 98th percentile of those inside, or half a code if that is more
+    double largest = 0.0;     // of those inside
+
+    [[nodiscard]] double ratio() const { return usual > 0.0 ? border / usual : 0.0; }
+    // Whether the border stands out from every joint inside: joints differ a little.
+    [[nodiscard]] bool stands_out() const { return border > kOverJoints * largest; }
+};
+
+// x and y, from column to column and from row to row. Every texel counts. Along an axis of fewer than 8 texels, nothing
+// is measured.
 struct Seam {
-    double ratio_x = 0.0;  // from the right border to the left
-    double ratio_y = 0.0;  // from the bottom border to the top
-    [[nodiscard]] double worst() const { return ratio_x > ratio_y ? ratio_x : ratio_y; }
+    std::array<SeamSteps, 4> steps = {};
+
+    [[nodiscard]] double worst() const;  // the largest ratio
+    // The largest ratio of those that stand out; null if none does.
+    [[nodiscard]] const SeamSteps* worst_standing_out() const;
 };
 Seam measure_seam(const Stored& stored);
 

@@ -2,6 +2,9 @@
 
 #include "stream/bake_stream.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -50,18 +53,19 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> opened = targets.open(files, given->planes(), report.extent, report.levels); !opened)
         return opened.error();
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
-    UsualSlope usual(report.extent);
+    std::optional<UsualSlope> usual;  // once the strength is known
     const WatchRows seen = [&](const LevelRows& rows) {
         if (rows.level != 0) return;
         slopes.add(rows.map, 0, rows.height);
         for (int j = 0; j < rows.height; ++j) {
-            if (usual.wants(rows.first + j)) usual.add({rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)});
+            if (usual->wants(rows.first + j)) usual->add({rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)});
         }
     };
     const HeightCounts before = heights->counts;
     Flow flow;
     flow.set_rows_together(targets.rows_together());
     const BakedRows baked = add_bake(flow, *heights, file.path(), options, gradient);
+    usual.emplace(report.extent, std::max(std::abs(baked.head.bumpiness_x), std::abs(baked.head.bumpiness_y)));
     const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first), given->planes()};
     add_levels(flow, given->add_to(flow, *baked.normals), levels, targets, seen);
     if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
@@ -76,7 +80,8 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         remark_with_counts(*heights, terrain != nullptr ? terrain->remark() : heights->remark, counts);
     report.strength = {baked.head.bumpiness_x, baked.head.bumpiness_y};
     report.is_stated = !options.strength && heights->stated;
-    report.usual_slope = usual.slope();
+    report.usual_slope = usual->slope();
+    report.auto_strength = usual->strength_for_one();
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;

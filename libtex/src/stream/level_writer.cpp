@@ -187,14 +187,18 @@ LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Exten
             1, nullptr};
 }
 
-LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels) {
-    TextureHead head{options.format, extent, levels};
+LevelPacking packing_of(const RoughnessFile& options, const KeptChannels* kept, Extent extent, int levels) {
+    TextureHead head{*options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
-    return {head,
-            [format = options.format, effort = options.effort](const LevelRows& rows, std::byte* out, std::byte*) {
-                pack_roughness_rows(rows.map.x, rows.height, format, effort, 0, rows.height, out);
-            },
-            1, nullptr};
+    const int channels = format_info(*options.format).channels;
+    std::fill_n(head.swizzle.begin(), channels, Component::other);
+    const auto pack = [parts = options.parts, kept, format = *options.format, effort = options.effort](
+                          const LevelRows& rows, std::byte* out, std::byte*) {
+        const ChannelPlanes* const beside =
+            kept == nullptr ? nullptr : &kept->levels[static_cast<std::size_t>(rows.level)];
+        pack_roughness_channels(rows.map.x, rows.first, rows.height, parts, beside, format, effort, out);
+    };
+    return {head, pack, 1, nullptr};
 }
 
 Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, Container container,

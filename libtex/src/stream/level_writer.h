@@ -19,6 +19,7 @@
 #include "formats/file_layout.h"
 #include "rows/other_rows.h"
 #include "rows/rdo_rows.h"
+#include "rows/roughness_channels.h"
 
 namespace tex::inline v1 {
 
@@ -44,7 +45,8 @@ struct LevelPacking {
 };
 LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels);
 LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Extent extent, int levels);
-LevelPacking packing_of(const RoughnessFile& options, Extent extent, int levels);
+// `kept` must outlive the packing; null if nothing is kept. Precondition: options.format is set.
+LevelPacking packing_of(const RoughnessFile& options, const KeptChannels* kept, Extent extent, int levels);
 
 class LevelWriter {
 public:

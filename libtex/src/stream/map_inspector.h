@@ -11,27 +11,34 @@
 #include <tex/types.h>
 
 #include "checks/stored.h"
+#include "checks/y_verdict.h"
 #include "kernels/normal_row.h"
 
 namespace tex::inline v1 {
 
-// Looks at parts of a map, at most 2^18 texels, and keeps their slopes if it measures y.
+// What an inspector looks at, of large maps: a glance for warnings, 2^18 texels; or what check() measures, 2^20.
+enum class Look { glance, as_check };
+
+// Looks at parts of a map, and keeps their slopes if it measures y.
 class MapInspector {
 public:
-    explicit MapInspector(Extent extent, bool measures_y = true);
+    explicit MapInspector(Extent extent, bool measures_y = true, Look look = Look::glance);
 
     // Whether add_row() looks at row j.
     [[nodiscard]] bool wants(int j) const;
-    // Takes row j of the unpacked map, with y up according to the assumption. Rows come in any order, each once; those
-    // that it does not want may be left out.
+    // Takes row j of the map, unpacked or with lengths as stored, with y up according to the assumption. Rows come in
+    // any order, each once; those that it does not want may be left out.
     void add_row(int j, const VectorRow& row);
 
-    // Where y points, if the rows show it clearly. Call it once, after the last row. Precondition: it measures y.
-    [[nodiscard]] std::optional<YAxis> y();
+    // Where y points. Call it once, after the last row. Precondition: it measures y.
+    [[nodiscard]] YVerdict y();
     // Sets what SourceInfo says about the texels. Call it once, after the last row.
     void report(SourceInfo& info);
 
 private:
+    // The slopes of a part that lies in one window, or reaches beyond it.
+    [[nodiscard]] Slopes slopes_at(const Rect& part) const;
+
     const Extent extent_;
     const bool measures_y_;
     std::vector<Rect> windows_;
@@ -39,8 +46,9 @@ private:
     std::int64_t texels_ = 0, background_ = 0, behind_ = 0;
 };
 
-// Where y of a whole map points.
-[[nodiscard]] std::optional<YAxis> shown_y(const NormalMap& map);
+// Where y of a whole map points, as check() sees it. Errors, without a file: it does not show it, or parts differ.
+[[nodiscard]] Result<YAxis> measured_y(const NormalMap& map);
+[[nodiscard]] Result<YAxis> measured_y(const YVerdict& verdict);
 
 // Inspects a whole map as the options say. Precondition: `info` knows whether y is assumed.
 void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& info);

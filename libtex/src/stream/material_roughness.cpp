@@ -3,9 +3,12 @@
 #include "stream/material_roughness.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <tex/pack.h>
 #include <tex/types.h>
 
 #include "kernels/roughness.h"
@@ -84,6 +87,39 @@ Result<MaterialRoughness> MaterialRoughness::of(const Plane<float>& map, Extent 
     if (!sampled) return sampled.error();
     own.alpha2_ = std::move(*sampled);
     return own;
+}
+
+Result<KeptChannels> kept_channels(const Texture& texture, Extent base, int first, int levels,
+                                   const MipOptions& options, const Execution& execution) {
+    if (texture.extent() != base) {
+        const auto text = [](Extent extent) {
+            return std::to_string(extent.width) + "x" + std::to_string(extent.height);
+        };
+        return Error{ErrorCode::bad_data,
+                     {},
+                     "the texture for roughness is " + text(texture.extent()) + ", the normal map " + text(base) +
+                         "; both must have the same size"};
+    }
+    KeptChannels kept;
+    for (int k = 0; k < first + levels; ++k) {
+        ChannelPlanes& planes = kept.levels.emplace_back();
+        if (static_cast<std::size_t>(k) < texture.levels.size()) {
+            Result<Image> image = decode(texture, k, execution);
+            if (!image) return image.error();
+            for (std::size_t c = 0; c < std::min(planes.size(), image->planes.size()); ++c)
+                planes[c] = std::move(image->planes[c]);
+            continue;
+        }
+        const ChannelPlanes& larger = kept.levels[static_cast<std::size_t>(k) - 1];
+        for (std::size_t c = 0; c < planes.size(); ++c) {
+            if (larger[c].empty()) continue;
+            Result<Plane<float>> half = halved(larger[c], options, execution, {0.0, 0.0});
+            if (!half) return half.error();
+            planes[c] = std::move(*half);
+        }
+    }
+    kept.levels.erase(kept.levels.begin(), kept.levels.begin() + first);
+    return kept;
 }
 
 void MaterialRoughness::row(int j, float* roughness, float* alpha2) const {

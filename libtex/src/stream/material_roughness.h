@@ -6,6 +6,7 @@
 #include <tex/mip.h>
 #include <tex/types.h>
 
+#include "rows/roughness_channels.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -31,5 +32,11 @@ private:
     const Plane<float>* map_ = nullptr;  // or a map of the right extent,
     Plane<float> alpha2_;                // or the resampled alpha^2 of another map
 };
+
+// What a roughness file keeps (RoughnessFile::kept), at `levels` levels from `first` on: those of the texture, and from
+// its last one on averages. Errors: bad_data (the texture has another extent than the base level), out_of_memory,
+// cancelled; those of decode().
+Result<KeptChannels> kept_channels(const Texture& texture, Extent base, int first, int levels,
+                                   const MipOptions& options, const Execution& execution);
 
 }  // namespace tex::inline v1

@@ -12,7 +12,6 @@
 #include "rows/unpack_rows.h"
 #include "stream/filled_map.h"
 #include "stream/map_inspector.h"
-#include "stream/measured_y.h"
 #include "stream/other_channels.h"
 #include "stream/source_layout.h"
 #include "threads/parallel.h"
@@ -22,8 +21,8 @@ namespace {
 
 // Turns normals that were unpacked with y up, whatever it is, so that their y points up.
 Result<void> turn_up(Source& source) {
-    const std::optional<YAxis> shown = shown_y(source.chain.levels.front());
-    if (!shown) return undecided_y({});
+    const Result<YAxis> shown = measured_y(source.chain.levels.front());
+    if (!shown) return shown.error();
     source.info.y_axis = *shown;
     source.info.y_known = true;
     if (*shown == YAxis::up) return {};

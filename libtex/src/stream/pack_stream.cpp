@@ -3,9 +3,12 @@
 #include "stream/pack_stream.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include <tex/file.h>
+#include <tex/format.h>
 #include <tex/types.h>
 
 #include "rows/mip_rows.h"
@@ -31,6 +34,13 @@ constexpr ApartFile kFiles[] = {
     {kOtherPlaces[2], &PackFileOptions::length_file},
 };
 
+// The format, or the same with alpha, whichever the container can hold.
+Format format_with_room(Format format, Container container) {
+    if (can_hold(container, format)) return format;
+    const FormatInfo info = format_info(format);
+    return format_of(info.sample, info.bits, 4).value_or(format);
+}
+
 class PackRun {
 public:
     PackRun(MapSource& map, const std::string& output, Container container, const PackFileOptions& options,
@@ -47,6 +57,7 @@ private:
     Result<void> settle_others();
     [[nodiscard]] OtherPlanes accounted_for() const;
     Result<void> find_own_roughness();
+    Result<void> find_kept_channels();
     Result<void> open_targets();
     Result<void> pack_level(int level, const Execution& execution);
     [[nodiscard]] int roughness_levels() const {
@@ -67,6 +78,7 @@ private:
     std::optional<MipOptions> mip_;
     Plane<float> roughness_map_;  // RoughnessFile::map
     std::optional<MaterialRoughness> own_;
+    std::optional<KeptChannels> beside_roughness_;
     GivenOthers given_;
     OtherPlanes written_;    // what files of normals get beside them
     OtherPlanes kept_;       // what of the source goes along: into these files, or into its own
@@ -204,6 +216,29 @@ Result<void> PackRun::find_own_roughness() {
     return {};
 }
 
+// What stays in the roughness file beside roughness, and the format of the file.
+Result<void> PackRun::find_kept_channels() {
+    if (!options_.roughness) return {};
+    const RoughnessFile& file = *options_.roughness;
+    report_.roughness_format = file.format.value_or(report_.roughness_format);
+    if (!file.kept) return {};
+    const Result<Texture> texture = file.kept();
+    if (!texture) return texture.error();
+    if (!file.format) report_.roughness_format = format_with_room(texture->format, file.container);
+    if (!holds_roughness(report_.roughness_format) || (!file.format && format_info(texture->format).has_blocks())) {
+        return Error{ErrorCode::unsupported,
+                     {},
+                     "the texture for roughness holds " + std::string(name_of(kFormatNames, texture->format)) +
+                         ", which cannot take roughness without changing the rest; write another file, or name a "
+                         "format"};
+    }
+    Result<KeptChannels> kept = kept_channels(*texture, extent(first_), left_out_, roughness_levels(),
+                                              mip_.value_or(MipOptions()), execution_.quiet());
+    if (!kept) return kept.error();
+    beside_roughness_ = std::move(*kept);
+    return {};
+}
+
 Result<void> PackRun::open_targets() {
     Result<void> opened = targets_.open(files_, written_, report_.extent, report_.levels);
     for (const auto& [place, file] : kFiles) {
@@ -211,7 +246,10 @@ Result<void> PackRun::open_targets() {
             opened = targets_.open(*(options_.*file), place, options_.write, report_.extent, report_.levels);
     }
     if (!opened || !options_.roughness) return opened;
-    return targets_.open(*options_.roughness, options_.write, report_.extent, roughness_levels());
+    RoughnessFile file = *options_.roughness;
+    file.format = report_.roughness_format;
+    return targets_.open(file, beside_roughness_ ? &*beside_roughness_ : nullptr, options_.write, report_.extent,
+                         roughness_levels());
 }
 
 // Where data are not lost, or were told to go.
@@ -249,6 +287,7 @@ Result<PackFileReport> PackRun::run() {
     if (const Result<void> opened = map_.open(execution_); !opened) return opened.error();
     if (const Result<void> ready = prepare(); !ready) return map_.map().after_all_rows(ready.error());
     if (const Result<void> found = find_own_roughness(); !found) return found.error();
+    if (const Result<void> found = find_kept_channels(); !found) return found.error();
     if (const Result<void> opened = open_targets(); !opened) return opened.error();
     double texels = 0.0;
     for (int level = first_; level < end_; ++level) texels += static_cast<double>(extent(level).texels());

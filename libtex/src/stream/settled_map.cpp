@@ -8,7 +8,7 @@
 
 #include "checks/channel_order.h"
 #include "rows/swizzle_evidence.h"
-#include "stream/measured_y.h"
+#include "stream/map_inspector.h"
 #include "stream/source_layout.h"
 
 namespace tex::inline v1 {
@@ -119,12 +119,13 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     options_.measure_y = options_.file_y_first = false;
     options_.unpack.y_axis = YAxis::up;
     if (Result<void> settled = settle(); !settled) return settled;
-    MapInspector inspector(map_->extent(0));
+    rule_.keep_length = true;  // the check judges what is stored
+    MapInspector inspector(map_->extent(0), true, Look::as_check);
     Flow flow;
     add_to(flow, 0, {{}, &inspector});
     if (Result<void> seen = flow.run(execution.quiet()); !seen) return seen;
-    const std::optional<YAxis> shown = inspector.y();
-    if (!shown) return undecided_y(map_->path());
+    const Result<YAxis> shown = measured_y(inspector.y());
+    if (!shown) return shown.error().of(map_->path());
     options_.unpack.y_axis = *shown;
     return settle();
 }

@@ -114,11 +114,12 @@ Result<void> Targets::open(const std::vector<FileTarget>& targets, OtherPlanes o
     return {};
 }
 
-Result<void> Targets::open(const RoughnessFile& file, const WriteOptions& write, Extent extent, int levels) {
+Result<void> Targets::open(const RoughnessFile& file, const KeptChannels* kept, const WriteOptions& write,
+                           Extent extent, int levels) {
     WriteOptions options = write;
     if (!can_compress(file.container)) options.zstd = 0;
-    return add(Content::roughness, file.output, file.level_names, file.container, packing_of(file, extent, levels),
-               options, Opened::late);
+    return add(Content::roughness, file.output, file.level_names, file.container,
+               packing_of(file, kept, extent, levels), options, Opened::late);
 }
 
 Result<void> Targets::open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,

@@ -60,8 +60,9 @@ public:
     // Opens a file for what is beside the rows of normals in one place.
     Result<void> open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,
                       int levels);
-    // Opens a file, or files, for roughness.
-    Result<void> open(const RoughnessFile& file, const WriteOptions& write, Extent extent, int levels);
+    // Opens a file, or files, for roughness. `kept` is as in packing_of().
+    Result<void> open(const RoughnessFile& file, const KeptChannels* kept, const WriteOptions& write, Extent extent,
+                      int levels);
 
     // If true, rows of this level must come one strip at a time, from the top. If false, they may come in any order,
     // from several threads at once.

@@ -45,20 +45,27 @@ double rounded_to_three_digits(double value) {
 
 }  // namespace
 
-UsualSlope::UsualSlope(Extent extent)
-    : width_(extent.width), stride_(static_cast<int>((extent.texels() + kEnoughTexels - 1) / kEnoughTexels)),
-      counts_(kSlopeBinCount) {}
+UsualSlope::UsualSlope(Extent extent, float strength)
+    : width_(extent.width), strength_(strength == 0.0f ? 1.0f : std::abs(strength)),
+      stride_(static_cast<int>((extent.texels() + kEnoughTexels - 1) / kEnoughTexels)), counts_(kSlopeBinCount) {}
 
 void UsualSlope::add(const VectorRow& row) {
     const std::lock_guard lock(mutex_);
     for (int i = 0; i < width_; ++i) {
-        const float z = std::max(row.z[i], 1e-16f);
+        const float z = std::max(row.z[i], 1e-16f) * strength_;
         const float square = (row.x[i] * row.x[i] + row.y[i] * row.y[i]) / (z * z);
         ++counts_[std::min<std::size_t>(std::bit_cast<std::uint32_t>(square) >> kDroppedBits, kSlopeBinCount - 1)];
     }
 }
 
-float UsualSlope::slope() const {
+float UsualSlope::slope() const { return strength_ * slope_at_one(); }
+
+float UsualSlope::strength_for_one() const {
+    const auto slope = static_cast<double>(slope_at_one());
+    return slope > 0.0 ? static_cast<float>(rounded_to_three_digits(1.0 / slope)) : 0.0f;
+}
+
+float UsualSlope::slope_at_one() const {
     std::int64_t all = 0, below = 0;
     for (const std::int64_t count : counts_) all += count;
     std::size_t bin = 0;
@@ -80,10 +87,8 @@ Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& option
     Execution onward = execution.quiet();
     onward.progress = [&execution](double) { return !execution.progress || execution.progress(0.0); };
     if (const Result<void> done = flow.run(onward); !done) return done.error();
-    const auto slope = static_cast<double>(usual.slope());
-    if (!(slope > 0.0)) return Strength{};
-    const auto strength = static_cast<float>(rounded_to_three_digits(1.0 / slope));
-    return Strength{strength, strength};
+    const float strength = usual.strength_for_one();
+    return strength > 0.0f ? Strength{strength, strength} : Strength{};
 }
 
 Result<BakeFileOptions> with_measured_strength(InputFile& file, const BakeFileOptions& options,

@@ -17,16 +17,23 @@ namespace tex::inline v1 {
 // Looks at some rows of a map, about 2^18 texels, in any order and from any thread. The result depends on neither.
 class UsualSlope {
 public:
-    explicit UsualSlope(Extent extent);
+    // `strength` is that of the map, and not 0: slopes are counted as they are at strength 1, so that each strength of
+    // the same heights finds the same.
+    explicit UsualSlope(Extent extent, float strength = 1.0f);
 
     [[nodiscard]] bool wants(int row) const { return row % stride_ == 0; }
     void add(const VectorRow& row);
 
     // The 99th percentile, rise per texel along the steepest direction, to 1 %. To be called after all rows.
     [[nodiscard]] float slope() const;
+    // The strength at which it is 1, to three digits; 0 if nothing slopes.
+    [[nodiscard]] float strength_for_one() const;
 
 private:
+    [[nodiscard]] float slope_at_one() const;
+
     const int width_;
+    const float strength_;
     int stride_ = 1;
     std::mutex mutex_;
     std::vector<std::int64_t> counts_;  // of slopes, in bins of equal ratio

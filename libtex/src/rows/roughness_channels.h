@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// roughness_channels.h: packs rows of roughness into textures of several channels, beside what these hold already.
+
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <tex/format.h>
+#include <tex/pack.h>
+#include <tex/pipeline.h>
+#include <tex/types.h>
+
+namespace tex::inline v1 {
+
+// What a texture holds: R, G, B and A of each level, from 0 to 1. A plane is empty if the texture lacks the channel.
+using ChannelPlanes = std::array<Plane<float>, 4>;
+struct KeptChannels {
+    std::vector<ChannelPlanes> levels;
+};
+
+// Whether a roughness file may have this format: one channel, or more of these.
+[[nodiscard]] bool holds_roughness(Format format);
+
+// Packs `height` rows of a level, which begin at row `first` of it and are rows 0 and on of `roughness`. `kept` is the
+// same level, or null. Precondition: the format is one of those of holds_roughness().
+void pack_roughness_channels(const Plane<float>& roughness, int first, int height, const RoughnessParts& parts,
+                             const ChannelPlanes* kept, Format format, Effort effort, std::byte* out);
+
+}  // namespace tex::inline v1
