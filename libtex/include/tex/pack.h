@@ -250,6 +250,12 @@ struct UnpackOptions {
 
 // -- roughness ------------------------------------------------------------------------------------------------------
 
+// What a channel of a roughness file holds. `smoothness` is 1 - roughness. `kept`: what RoughnessFile::kept has there,
+// averaged in smaller levels that it lacks; 1 if it has no such channel.
+enum class RoughnessPart { roughness, smoothness, zero, one, kept };
+
+using RoughnessParts = std::array<RoughnessPart, 4>;  // of R, G, B and A, as far as the format has them
+
 // The first channel holds roughness; no channel holds a component of a normal.
 inline constexpr Swizzle kRoughnessSwizzle = {Component::other, Component::zero, Component::zero, Component::one};
 

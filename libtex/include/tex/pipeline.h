@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -156,12 +155,6 @@ struct BakeFileReport {
 [[nodiscard]] TEX_API Result<BakeFileReport> bake_file(const std::string& input, const std::string& output,
                                                        Container container, const BakeFileOptions& options = {},
                                                        const Execution& execution = {});
-
-// What a channel of a roughness file holds. `smoothness` is 1 - roughness. `kept`: what RoughnessFile::kept has there,
-// averaged in smaller levels that it lacks; 1 if it has no such channel.
-enum class RoughnessPart { roughness, smoothness, zero, one, kept };
-
-using RoughnessParts = std::array<RoughnessPart, 4>;  // of R, G, B and A, as far as the format has them
 
 // A roughness map written beside the normal map: build_roughness_chain() of the base level, with the same number of
 // levels (one, if the file holds one), write_texture(). The format is one of pack_roughness(); BC5 or EAC RG11; or one

@@ -9,7 +9,6 @@
 
 #include <tex/format.h>
 #include <tex/pack.h>
-#include <tex/pipeline.h>
 #include <tex/types.h>
 
 namespace tex::inline v1 {
