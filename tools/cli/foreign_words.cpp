@@ -82,7 +82,7 @@ constexpr ForeignWord kForeignWords[] = {
     {"directx d3d dx", "down", true},
     {"ati2 ati2n 3dc", "bc5", true},
     {"bc3nm bc3n", "dxt5nm", true},
-    {"dxt5 bc3 bc3_unorm dxt5n", "dxt5nm", false},
+    {"dxt5 bc3 bc3_unorm", "dxt5nm", false},
     {"bc5_unorm bc5u bc5n rgtc2 latc2 bc7 bc7_unorm", "bc5", false},
     {"bc5_snorm bc5s", "bc5-snorm", false},
     {"eac etc2 etc2-rg eac_rg11 rg11", "eac-rg11", false},
