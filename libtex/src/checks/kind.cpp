@@ -290,8 +290,8 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
         // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures.
         const bool has_grey =
             !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
-        constexpr double kMostBeyondOfTwo = 0.25;
-        if (m.beyond > kMostBeyondOfTwo) return Kind::no_map;
+        const double most_beyond = stored.in_blocks ? 0.5 : 0.25;  // of blocks, sRGB curves push more texels outside
+        if (m.beyond > most_beyond) return Kind::no_map;
         return has_grey && !is_surface ? Kind::no_map : Kind::normals;
     }
     if (m.grey > thresholds::kGreyTexels) return Kind::no_map;
