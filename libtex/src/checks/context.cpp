@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
 #include <tex/format.h>
 #include <tex/pack.h>
+#include <tex/types.h>
 
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
@@ -86,6 +88,10 @@ Result<void> decide_kind(CheckContext& context) {
         if (*kind == Kind::no_map) context.kind_measure = without;
     }
     context.kind = *kind;
+    // Around charts on grey, JPEG leaves vectors of all directions.
+    const bool has_value = context.background && context.background->texels > 0;
+    if (context.kind == Kind::two_components && has_value && !context.kind_measure.alpha_varies)
+        context.kind = Kind::normals;
     if (context.kind == Kind::two_components) {
         for (Component& held : stored.swizzle) held = held == Component::z ? Component::other : held;
     } else if (context.kind == Kind::x_ray) {

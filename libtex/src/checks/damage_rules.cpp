@@ -28,7 +28,7 @@ namespace {
 constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
-constexpr double kJpegLead = 1.15;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
+constexpr double kJpegLead = 1.05;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
 constexpr int kLeastTurnedSide = 64;          // smaller maps, as pixel art, seem exchanged by chance
 constexpr int kLatticeTeeth = 6;
 constexpr double kLatticeUneven = 0.25;

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <cstdint>
+#include <string>
 
 #include "checks/centre.h"
 #include "checks/findings.h"
@@ -228,7 +229,7 @@ bool are_damaged_vectors(const KindMeasure& m) {
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
-    const bool is_level = m.level > thresholds::kLevelShare;
+    const bool is_level = m.level > thresholds::kLevelShare || m.as(Reading::as_stored).z > thresholds::kUprightMedian;
     if (std::abs(relation_of(m)) > (is_level ? thresholds::kColorRelated : thresholds::kTwoRelated)) return false;
     const double variance = m.deviation_x * m.deviation_x + m.deviation_y * m.deviation_y;
     if (variance > thresholds::kTwoVariance && !is_surface) return false;
@@ -289,8 +290,8 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
         // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures.
         const bool has_grey =
             !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
-        constexpr double kMostBeyondOfTwo = 0.25;
-        if (m.beyond > kMostBeyondOfTwo) return Kind::no_map;
+        const double most_beyond = stored.in_blocks ? 0.5 : 0.25;  // of blocks, sRGB curves push more texels outside
+        if (m.beyond > most_beyond) return Kind::no_map;
         return has_grey && !is_surface ? Kind::no_map : Kind::normals;
     }
     if (m.grey > thresholds::kGreyTexels) return Kind::no_map;

@@ -172,7 +172,7 @@ constexpr Rule kRules[] = {
     {"N221", "blue-from-zero", values, warning, true, "Blue holds z from 0 to 1.",
      "Vectors are of unit length if z is blue, and not if it is 2 blue - 1. Readers that do not rebuild z get bent "
      "normals, which point into the surface where it is steep.",
-     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N213 N214 N219"},
+     "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED", "N115 N201 N202 N205 N207 N213 N214 N219"},
     {"N222", "x-lost", values, error, true, "x of the normals is lost.",
      "R and B are constant, and there is no alpha, which holds x in the layout of DXT5nm. Tools that extract textures "
      "from games leave alpha out, and so does DXT1. Nothing can bring x back.",
