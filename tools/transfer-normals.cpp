@@ -154,7 +154,7 @@ Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes) const {
     const cli::MeshSpace& low = meshes.low;
     const cli::HighParts& high = *meshes.high;
-    cli::HighMeshes::compare(job, low.selected().part, high.parts);
+    high_.compare(job, low.selected().part, high.parts);
     job.report["tangents"] = name_of(kTangentSourceNames, low.source());
     TransferInputs inputs;
     if (const MeshPart& rest = low.selected().rest; !rest.indices.empty()) inputs.around = &rest;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,39 @@ TEST_F(TransferNormals, LimitsWhatNodesMultiply) {
             "high.glb: its 100 nodes make 100 triangles of 1: too many copies; --max-triangles allows more than 1K");
     does({"sheet.obj", "high.glb", "-o", "n.png", "--max-triangles", "2K", "--front", "1", "--back", "1"});
     does({"sheet.obj", "high.glb", "-o", "n.png", "--front", "1", "--back", "1"});
+}
+
+// The sheet in centimetres, and with y up.
+TEST_F(TransferNormals, PlacesHighMeshesOfAnotherUnitAndOtherAxes) {
+    std::istringstream lines(kSheetObj);
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word;
+        double x = 0.0, y = 0.0, z = 0.0;
+        words >> word >> x >> y >> z;
+        if (word == "v") line = fmt::format("v {} {} {}", 100.0 * x, 100.0 * z, -100.0 * y);
+        if (word == "vn") line = fmt::format("vn {} {} {}", x, z, -y);
+        text += line + "\n";
+    }
+    scratch_.write("other.obj", text);
+    const Ran far = go({"sheet.obj", "other.obj", "-o", "n.png"});
+    EXPECT_NE(far.code, 0);
+    EXPECT_NE(far.err.find("both meshes differ in unit or axes, and would fit with --high-scale 0.01 --high-up y"),
+              std::string::npos)
+        << far.err;
+    does({"sheet.obj", "other.obj", "-o", "n.png", "--high-scale", "0.01", "--high-up", "y"});
+    does({"sheet.obj", "sheet.obj", "-o", "same.png"});
+    const NormalMap moved = map("n.png"), same = map("same.png");
+    for (int j = 0; j < 96; ++j) {
+        for (int i = 0; i < 96; ++i) {
+            ASSERT_NEAR(moved.x.at(i, j), same.x.at(i, j), 0.01f);
+            ASSERT_NEAR(moved.y.at(i, j), same.y.at(i, j), 0.01f);
+        }
+    }
+    const Ran turned = go({"other.obj", "sheet.obj", "-o", "n.png"});
+    EXPECT_NE(turned.err.find("--high-scale 100 --high-up z"), std::string::npos) << turned.err;
+    refuses({"sheet.obj", "other.obj", "-o", "n.png", "--high-scale", "0"}, 2, "--high-scale");
 }
 
 // The library makes the same maps of the same files.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -43,6 +44,11 @@ void HighMeshes::add(Command& command) {
     row.repeatable = true;
     row.preset = "the inputs after the first one";
     command.choice(match_, "--match", "M", kMatchNames, "which parts of both meshes belong together");
+    command
+        .option("--high-scale", "S", "what the high meshes are multiplied by, if their unit is another one",
+                [this](const std::string& text) { units_.scale = parse_double(text, kPositive); })
+        .preset = "1";
+    command.choice(units_.up, "--high-up", "AXIS", kUpAxisNames, "the axis that points up in the high meshes");
     command
         .option("--max-triangles", "N", "the most triangles that nodes may make by showing meshes more than once",
                 [this](const std::string& text) { most_ = parse_count(text); })
@@ -113,6 +119,7 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
             part.tangents.clear();
         }
         const std::vector<MeshMaterial> materials = mesh->materials;
+        units_.place(*mesh);
         auto placed = parts_in_scene(std::move(*mesh), static_cast<std::size_t>(most_));
         if (!placed) return with_limit(placed.error()).of(name);
         for (MeshPart& part : *placed) {
@@ -170,10 +177,18 @@ Error HighMeshes::with_order(const Error& error) {
     return {error.code, error.file, error.reason + "; is it the high mesh? The low one comes first"};
 }
 
-void HighMeshes::compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high) {
+void HighMeshes::compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high) const {
     std::size_t triangles = 0;
     for (const MeshPart& part : high) triangles += part.triangles();
     job.report["triangles"] = {{"low", low.triangles()}, {"high", triangles}};
+    const bool is_known = !units_.is_plain() || job.task.is_tile_of_mesh();
+    const auto units = is_known ? std::nullopt : fitting_units(low, high);
+    if (units) {
+        job.warn(
+            fmt::format("both meshes differ in unit or axes, and would fit with {} (FBX files are in centimetres, glTF "
+                        "in metres; some programs have z up)",
+                        units->arguments()));
+    }
     if (low.triangles() <= 2 * triangles) return;
     job.warn(
         fmt::format("has more triangles, {}, than the high mesh, {}; did both change places? The low one comes "

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // high_meshes.h: the option group of the meshes that rays hit: --high, or the inputs after the first one;
-// --match, --max-triangles.
+// --match, --high-scale, --high-up, --max-triangles.
 
 #pragma once
 
@@ -14,6 +14,7 @@
 
 #include "cli/command.h"
 #include "options/mesh_files.h"
+#include "options/mesh_units.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -68,8 +69,8 @@ public:
 
     // An error about the low mesh, with the remedy if both may have changed places.
     [[nodiscard]] static Error with_order(const Error& error);
-    // Warns if the low mesh has more than twice as many triangles as the high ones.
-    static void compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high);
+    // Warns if the low mesh has more than twice as many triangles as the high ones, or another unit or other axes.
+    void compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high) const;
 
 private:
     // An error of parts_in_scene(), with the remedy if there are too many copies.
@@ -80,6 +81,7 @@ private:
 
     std::vector<std::string> patterns_;
     Match match_ = Match::all;
+    MeshUnits units_;
     std::int64_t most_ = kMaxCopied;
     mutable std::mutex mutex_;
     // What was read last for a tile, and the states of its files before.

@@ -4,23 +4,6 @@
 
 namespace tex::inline v1 {
 
-// Corners of places whose normal is not just mixed become (0, 0, 0), so that find() looks at them alone.
-void HitNormals::add(const HighSurface& surface, const Triangles::Triangle& triangle,
-                     const HighSurface::Weights& weights) {
-    const std::size_t k = places_.size();
-    places_.push_back(triangle);
-    weights_.x[k] = weights[0];
-    weights_.y[k] = weights[1];
-    weights_.z[k] = weights[2];
-    const bool mixes = surface.mixes_normals(triangle);
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Float3 n = mixes ? triangle.part.normals[triangle.vertex(corner)] : Float3{};
-        corners_[3 * corner][k] = n.x;
-        corners_[3 * corner + 1][k] = n.y;
-        corners_[3 * corner + 2][k] = n.z;
-    }
-}
-
 void HitNormals::find(const HighSurface& surface) {
     const float* rows[9];
     for (std::size_t row = 0; row < 9; ++row) rows[row] = corners_[row];

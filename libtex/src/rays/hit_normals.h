@@ -34,4 +34,21 @@ private:
     float corners_[9][kMost + kMoreVectors] = {};  // normals: corner and axis, triangle
 };
 
+// Corners of places whose normal is not just mixed become (0, 0, 0), so that find() looks at them alone.
+inline void HitNormals::add(const HighSurface& surface, const Triangles::Triangle& triangle,
+                            const HighSurface::Weights& weights) {
+    const std::size_t k = places_.size();
+    places_.push_back(triangle);
+    weights_.x[k] = weights[0];
+    weights_.y[k] = weights[1];
+    weights_.z[k] = weights[2];
+    const bool mixes = surface.mixes_normals(triangle);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Float3 n = mixes ? triangle.part.normals[triangle.vertex(corner)] : Float3{};
+        corners_[3 * corner][k] = n.x;
+        corners_[3 * corner + 1][k] = n.y;
+        corners_[3 * corner + 2][k] = n.z;
+    }
+}
+
 }  // namespace tex::inline v1

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "options/mesh_units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace tex::cli {
+namespace {
+
+constexpr double kFar = 0.5, kNear = 0.1;  // of the low mesh's diagonal
+
+struct Box {
+    std::array<double, 3> low, high;
+
+    Box() {
+        low.fill(std::numeric_limits<double>::infinity());
+        high.fill(-std::numeric_limits<double>::infinity());
+    }
+    void include(const std::array<double, 3>& p) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            low[k] = std::min(low[k], p[k]);
+            high[k] = std::max(high[k], p[k]);
+        }
+    }
+    void include(const MeshPart& part) {
+        for (const std::uint32_t v : part.indices) {
+            const Float3& p = part.positions[v];
+            include({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+        }
+    }
+    [[nodiscard]] Box with(const MeshUnits& units) const {
+        Box box;
+        box.include(units.of(low));
+        box.include(units.of(high));
+        return box;
+    }
+    [[nodiscard]] double diagonal() const {
+        double squared = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) squared += (high[k] - low[k]) * (high[k] - low[k]);
+        return std::sqrt(squared);
+    }
+    // The largest distance along an axis between a side of both.
+    [[nodiscard]] double distance(const Box& other) const {
+        double most = 0.0;
+        for (std::size_t k = 0; k < 3; ++k)
+            most = std::max({most, std::abs(low[k] - other.low[k]), std::abs(high[k] - other.high[k])});
+        return most;
+    }
+};
+
+}  // namespace
+
+std::array<double, 3> MeshUnits::of(const std::array<double, 3>& p) const {
+    std::array<double, 3> turned = p;
+    if (up == UpAxis::z) turned = {p[0], p[2], -p[1]};
+    if (up == UpAxis::y) turned = {p[0], -p[2], p[1]};
+    for (double& value : turned) value *= scale;
+    return turned;
+}
+
+void MeshUnits::place(Mesh& mesh) const {
+    if (is_plain()) return;
+    if (mesh.nodes.empty()) {
+        std::set<int> meshes;
+        for (const MeshPart& part : mesh.parts) meshes.insert(part.mesh);
+        for (const int number : meshes) mesh.nodes.push_back({{}, number});
+    }
+    for (MeshNode& node : mesh.nodes) {
+        std::array<double, 12>& rows = node.to_scene;
+        for (std::size_t column = 0; column < 4; ++column) {
+            const std::array<double, 3> moved = of({rows[column], rows[column + 4], rows[column + 8]});
+            for (std::size_t row = 0; row < 3; ++row) rows[4 * row + column] = moved[row];
+        }
+    }
+}
+
+std::string MeshUnits::arguments() const {
+    std::string text;
+    if (scale != 1.0) text = fmt::format("--high-scale {:.4g}", scale);
+    if (up != UpAxis::same) text += fmt::format("{}--high-up {}", text.empty() ? "" : " ", name_of(kUpAxisNames, up));
+    return text;
+}
+
+std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high) {
+    Box low_box, high_box;
+    low_box.include(low);
+    for (const MeshPart& part : high) high_box.include(part);
+    const double diagonal = low_box.diagonal();
+    if (low_box.distance(high_box) <= kFar * diagonal) return std::nullopt;
+    std::optional<MeshUnits> best;
+    double least = kNear * diagonal;
+    for (const double scale : {1.0, 0.01, 100.0, 0.001, 1000.0, 0.1, 10.0, 0.0254, 1.0 / 0.0254, 2.54, 1.0 / 2.54}) {
+        for (const UpAxis up : {UpAxis::same, UpAxis::z, UpAxis::y}) {
+            const MeshUnits units{scale, up};
+            const double distance = low_box.distance(high_box.with(units));
+            if (distance >= least) continue;
+            least = distance;
+            best = units;
+        }
+    }
+    return best;
+}
+
+}  // namespace tex::cli
