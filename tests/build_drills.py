@@ -4,9 +4,10 @@
 
     tests/build_drills.py [ROUNDS [BUILD [SEED]]]    default: 500 build/release 1
 
-Each round makes a random tree: links, odd names, files of equal bytes, outputs that lead to inputs, documents with the
-names of other files, a cache in a folder that is not one, a state that somebody else has written. It runs build-normals a few times: alone, two at once, killed,
-with inputs that are replaced meanwhile, with a damaged cache and a damaged state. After each run:
+Each round makes a random tree: links, odd names, files of equal bytes, outputs that lead to inputs, documents with
+the names of other files, a cache in a folder that is not one, a state that somebody else has written. It runs build-
+normals a few times: alone, two at once, killed, with inputs that are replaced meanwhile, with a damaged cache and a
+damaged state. After each run:
 
 * every file that the user had is byte for byte what it was, and so are the files outside the tree that links lead to;
 * every output is right: what a run in a fresh folder makes of some content that its input has had;
@@ -187,8 +188,8 @@ class Round:
         head = b"build-normals state 1\n"
         lines = state.read_bytes()[len(head):-69] if state.is_file() and not state.is_symlink() else b""
         victims = ["notes.txt", "normals.toml", "../outside/notes.txt", "../outside/victim0.png", "out/../notes.txt",
-                   "lnk/a.png", "away/victim1.png", "out/../../outside/victim2.png", os.path.join(self.outside, "notes.txt"),
-                   *self.contents]
+                   "lnk/a.png", "away/victim1.png", "out/../../outside/victim2.png",
+                   os.path.join(self.outside, "notes.txt"), *self.contents]
         for victim in victims:
             path = os.path.join(self.tree, victim)
             if not os.path.isfile(path) or any(c in victim for c in "%\t\n"):

@@ -291,10 +291,17 @@ TEST_F(BuildFiles, OldOutputsStayIfAnInputChangesWhileItIsRead) {
 TEST_F(BuildFiles, PruningRemovesWhatWasMadeAndIsMadeNoMore) {
     // A rule that reads what an older rule made.
     ASSERT_EQ(build().code, 0);
-    write_rule("match = \"out/shared/grain.dds\"\nsteps = [ { pack = {} } ]\nname = \"made/{stem}.dds\"\n");
+    // Rules of names that were given up, which make nothing.
+    const std::string old =
+        "[[rule]]\nmatch = \"shared/*.png\"\nexclude = \"**/*\"\nout-dir = \"out\"\nsteps = [ { bake = {} } ]\n"
+        "[[rule]]\nmatch = \"art/**/*_h.png\"\nexclude = \"**/*\"\nout-dir = \"out\"\nsteps = [ { bake = {} } ]\n"
+        "name = \"{dir}/{stem:-_h}_n.dds\"\n"
+        "[[rule]]\nmatch = \"out/shared/*.dds\"\nexclude = \"**/*\"\nsteps = [ { pack = {} } ]\n"
+        "name = \"made/{stem}.dds\"\n";
     scratch_.write("normals.toml",
                    "version = 1\n[[rule]]\nmatch = \"out/shared/*.dds\"\nsteps = [ { pack = {} } ]\n"
-                   "name = \"made/{stem}.dds\"\n");
+                   "name = \"made/{stem}.dds\"\n" +
+                       old);
     const Ran ran = build({"--prune"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_NE(ran.err.find("out/shared/grain.dds is not removed: this run reads it"), std::string::npos) << ran.err;
@@ -306,7 +313,8 @@ TEST_F(BuildFiles, PruningRemovesWhatWasMadeAndIsMadeNoMore) {
     fs::create_directory_symlink("moved", scratch_.path("made"));
     scratch_.write("normals.toml",
                    "version = 1\n[[rule]]\nmatch = \"out/shared/*.dds\"\nsteps = [ { pack = {} } ]\n"
-                   "name = \"moved/{stem}.dds\"\n");
+                   "name = \"moved/{stem}.dds\"\n" +
+                       old);
     EXPECT_EQ(build({"--prune"}).code, 0);
     EXPECT_TRUE(scratch_.has("moved/grain.dds"));
     // A link that somebody has put in the place of an output is not ours.

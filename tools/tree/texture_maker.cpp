@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -106,12 +105,6 @@ std::vector<std::string> files_of(const std::string& path, int levels) {
     return files;
 }
 
-// Whether the step writes files that its flow makes for its own levels alone.
-bool writes_further(const Step& step) {
-    const auto* const pack = std::get_if<PackFileOptions>(&step);
-    return pack != nullptr && (pack->roughness || pack->blue_file || pack->alpha_file || pack->length_file);
-}
-
 // Writes the files of options of the step elsewhere.
 void redirect(Step& step, const std::map<std::string, std::string>& further) {
     auto* const pack = std::get_if<PackFileOptions>(&step);
@@ -167,13 +160,6 @@ Result<Made> run_commands(const Recipe& recipe, const std::string& input, const 
     return made;
 }
 
-// Outputs by their places in a list of those that are wanted.
-using Group = std::vector<std::size_t>;
-
-Result<Made> make_one_after_the_other(const Recipe& recipe, const std::string& input,
-                                      const std::vector<WantedOutput>& wanted, const std::vector<Group>& groups,
-                                      const MakeSettings& settings, Console& console);
-
 // Makes outputs with the same data beside the normals, in one flow.
 Result<Made> make_together(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
                            const MakeSettings& settings, Console& console) {
@@ -212,17 +198,11 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
         const int levels = levels_of(a.step);
         return levels > 0 && (levels_of(b.step) == 0 || levels < levels_of(b.step));
     };
-    const auto most = std::max_element(endings.begin(), endings.end(), has_fewer);
-    if (most != endings.begin() && writes_further(endings.front().step)) {
-        Group others(wanted.size() - 1);
-        std::iota(others.begin(), others.end(), std::size_t{1});
-        return make_one_after_the_other(recipe, input, wanted, {{0}, others}, settings, console);
-    }
     std::vector<const Task*> tasks;
     for (const Ending& ending : endings) tasks.push_back(ending.task);
     std::vector<PackOptions> packs(wanted.size());
     for (std::size_t k = 0; k < endings.size(); ++k) keep_packing(endings[k].step, packs[k]);
-    std::iter_swap(endings.begin(), most);
+    std::iter_swap(endings.begin(), std::max_element(endings.begin(), endings.end(), has_fewer));
     const Task* const first = endings.front().task;
     std::vector<MoreFile> more;
     for (std::size_t k = 1; k < endings.size(); ++k) more.push_back(more_file(endings[k].step, *endings[k].task));
@@ -263,17 +243,28 @@ void add_new(std::vector<FileWarning>&& more, std::vector<FileWarning>& all) {
     }
 }
 
-Result<Made> make_one_after_the_other(const Recipe& recipe, const std::string& input,
-                                      const std::vector<WantedOutput>& wanted, const std::vector<Group>& groups,
-                                      const MakeSettings& settings, Console& console) {
+}  // namespace
+
+Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
+                          const MakeSettings& settings, Console& console) {
+    const auto data_of = [&](const WantedOutput& output) { return recipe.outputs()[output.index].data; };
+    std::vector<std::string> groups;
+    for (const WantedOutput& output : wanted) {
+        if (std::find(groups.begin(), groups.end(), data_of(output)) == groups.end()) groups.push_back(data_of(output));
+    }
+    if (groups.size() < 2) return make_together(recipe, input, wanted, settings, console);
     Made made;
     made.files.resize(wanted.size());
     made.packs.resize(wanted.size());
     MakeSettings own = settings;
     for (std::size_t group = 0; group < groups.size(); ++group) {
-        const Group& places = groups[group];
         std::vector<WantedOutput> together;
-        for (const std::size_t k : places) together.push_back(wanted[k]);
+        std::vector<std::size_t> places;
+        for (std::size_t k = 0; k < wanted.size(); ++k) {
+            if (data_of(wanted[k]) != groups[group]) continue;
+            together.push_back(wanted[k]);
+            places.push_back(k);
+        }
         const auto count = static_cast<double>(groups.size());
         own.advance = [&settings, group, count](double fraction) {
             return settings.advance((static_cast<double>(group) + fraction) / count);
@@ -293,26 +284,6 @@ Result<Made> make_one_after_the_other(const Recipe& recipe, const std::string& i
         own.source.clear();  // the normals before packing are the same
     }
     return made;
-}
-
-}  // namespace
-
-Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
-                          const MakeSettings& settings, Console& console) {
-    std::vector<std::string> data;
-    std::vector<Group> groups;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const std::string& own = recipe.outputs()[wanted[k].index].data;
-        const auto known = std::find(data.begin(), data.end(), own);
-        if (known == data.end()) {
-            data.push_back(own);
-            groups.push_back({k});
-        } else {
-            groups[static_cast<std::size_t>(known - data.begin())].push_back(k);
-        }
-    }
-    if (groups.size() < 2) return make_together(recipe, input, wanted, settings, console);
-    return make_one_after_the_other(recipe, input, wanted, groups, settings, console);
 }
 
 }  // namespace tex::cli
