@@ -25,7 +25,7 @@ Format map_format(Container container) {
 Row& MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
     name_ = std::move(name);
-    command.output_file(pattern_, name_, std::move(help));
+    Row& row = command.output_file(pattern_, name_, std::move(help));
     command.check([this, &command] {
         if (command.given(name_) && pattern_.empty()) throw UsageError(name_ + ": needs a value that is not empty");
         if (pattern_ == "-") throw UsageError(name_ + ": needs a file, not standard output");
