@@ -60,7 +60,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
     command
         .option("--steepest", "S", "slopes above S are unknown, and follow from the others",
-                [this](const std::string& text) { steepest_ = cli::parse_double(text, cli::kPositive); })
+                [this](const std::string& text) { steepest_ = cli::parse_double(text, kPositive); })
         .preset = "127 for 8 bits, 32767 for 16 bits, 1000000 for floats";
     command
         .option("--least-response", "R", "leave out what the kernel sees with less than R of a derivative's strength",
