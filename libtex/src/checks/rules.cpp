@@ -2,8 +2,6 @@
 
 #include "checks/rules.h"
 
-#include <cassert>
-
 namespace tex::inline v1 {
 namespace {
 
@@ -108,8 +106,7 @@ constexpr Rule kRules[] = {
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
      "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 "
-     "N402 "
-     "N403 N404 N501 N502 N503 N504 N219"},
+     "N402 N403 N404 N501 N502 N503 N504 N219"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
      "Unity's shaders multiply R and A to read x from either; where R is not 255, x comes out too small (or 0). "
      "Shaders that read A and G alone are right. Require format=dxt5nm where R matters.",
@@ -125,16 +122,14 @@ constexpr Rule kRules[] = {
      "N115 N201 N202 N205 N207 N215 N305 N310 N401 N402 N403 N404 N501 N502 N504"},
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
-     "G "
-     "rise and fall together, or do not centre on the middle. No other rule judges the texels.",
+     "G rise and fall together, or do not centre on the middle. No other rule judges the texels.",
      "Give the slot of the normal map the picture that belongs there.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     {"N215", "background", values, warning, true, "The background is not filled.",
      "A colour that is no normal (black, grey, white) fills areas around the charts. Filters and block compression mix "
      "it into the charts beside it, and each smaller level mixes in twice as much: dark lines along the seams. The "
-     "other "
-     "rules leave it out.",
+     "other rules leave it out.",
      "pack-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
     {"N216", "occlusion-roughness-metal", values, error, true, "The picture holds occlusion, roughness and metalness.",
      "Blue is 0 or 1 nearly everywhere, red is far from the middle, and no vector is of unit length. So are the "
@@ -186,14 +181,12 @@ constexpr Rule kRules[] = {
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.",
      "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
-     "with "
-     "coarser steps: convert FILE -set colorspace RGB -colorspace sRGB FIXED.png",
+     "with coarser steps: convert FILE -set colorspace RGB -colorspace sRGB FIXED.png",
      "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.",
      "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
-     "with "
-     "coarser steps: convert FILE -set colorspace sRGB -colorspace RGB -set colorspace sRGB FIXED.png",
+     "with coarser steps: convert FILE -set colorspace sRGB -colorspace RGB -set colorspace sRGB FIXED.png",
      "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
@@ -206,8 +199,7 @@ constexpr Rule kRules[] = {
      "", "N201 N202 N310"},
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
-     "reflections. Bake "
-     "from 16 bits, or smooth the steps of the heights.",
+     "reflections. Bake from 16 bits, or smooth the steps of the heights.",
      "Bake it again from heights of 16 bits or floats, or with --deband on.", ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
@@ -216,13 +208,11 @@ constexpr Rule kRules[] = {
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "Where the map repeats, x or y changes more from its last line to its first than between any two lines inside, by "
      "a fifth or more, and at least 1.8 times as much as between 98 % of them. Joints between bricks or boards inside "
-     "are such steps, too, so "
-     "a border that lies in a joint is no seam. Off unless tiles is required.",
+     "are such steps, too, so a border that lies in a joint is no seam. Off unless tiles is required.",
      "Make the map from heights that repeat, and bake it with --wrap repeat; or do not require tiles of it.", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged, or the picture was turned.",
      "Either another channel than the third holds z (blue, green, red order), or the slopes have curl as they stand "
-     "and "
-     "none when x and y are exchanged. Then the channels of x and y changed places (also where the order of BC5's "
+     "and none when x and y are exchanged. Then the channels of x and y changed places (also where the order of BC5's "
      "blocks was mistaken), or the picture was turned by 90 degrees while its vectors stayed. Maps whose structures "
      "are diagonal (rope, braids) fit either way and are not judged.",
      "If channels are exchanged, export the map again with x in red and y in green. If the picture was turned, turn it "
@@ -235,17 +225,15 @@ constexpr Rule kRules[] = {
      "Turn the picture back. To turn a map with its vectors, blend it over a flat one with blend-normals --rotate.",
      "N308 N310 N401 N402 N403 N404"},
     {"N310", "no-surface", damage, note, true, "The slopes are those of no surface.",
-     "They have as much curl as noise has. Noise was painted or stored instead of "
-     "normals, or compression left nothing of faint bumps. Less curl than that is no finding: intact maps from "
-     "high-poly "
-     "models have up to 40 %.",
+     "They have as much curl as noise has. Noise was painted or stored instead of normals, or compression left nothing "
+     "of faint bumps. Less curl than that is no finding: intact maps from high-poly models have up to 40 %.",
      "Bake the map again, or compress it less.", "N403"},
     {"N311", "wrong-sign", damage, error, true, "The file declares the wrong sign.",
      "Its texels are those of the signed format, and the header names the unsigned one, or the other way round. Then "
      "flat texels point outwards along a diagonal.",
      "Write the file again, or its header alone, with the format that the message names.",
-     "N201 N202 N203 N205 N206 N207 N208 N213 N214 N215 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 "
-     "N404 N501 N502 N503 N504"},
+     "N201 N202 N203 N205 N206 N207 N208 N213 N214 N215 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 N404 "
+     "N501 N502 N503 N504"},
     {"N312", "scaled-up", damage, note, true, "The map was enlarged.",
      "Its texels repeat, or lie on lines between those of a smaller map: it holds the details of that one alone.",
      "Bake the map at this size, or use the smaller one. Pixel art is meant to be so.", ""},
@@ -268,8 +256,7 @@ constexpr Rule kRules[] = {
      "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field, as many maps baked from high-poly meshes: the message names the "
-     "limit "
-     "of N401 that it misses. Reported where y is required.",
+     "limit of N401 that it misses. Reported where y is required.",
      "Look at it with preview-normals, or state what its author says: --y-in up or --y-in down.", ""},
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",
      "The file's own mark of y (KTX2, EXR) is not what the texels show. Either the mark is wrong, or red is mirrored; "
@@ -359,18 +346,17 @@ constexpr Rule kRules[] = {
      "", ""},
     {"N724", "padding-too-small", mesh, note, true, "The padding around charts is too small for mip levels.",
      "A texel of level n is the mean of 2^n by 2^n texels. Where the background or another chart is closer than that, "
-     "it "
-     "bleeds into the chart, and seams show at a distance. Levels down to a side of 128 texels are examined: 8 texels "
-     "of padding suffice at 1024, 16 at 2048.",
+     "it bleeds into the chart, and seams show at a distance. Levels down to a side of 128 texels are examined: 8 "
+     "texels of padding suffice at 1024, 16 at 2048.",
      "Bake the map with more padding, and leave at least twice as much space between charts.", ""},
     {"N731", "quads-ambiguous", mesh, note, true, "Quads can be split in two ways that shade differently.",
      "A quad is drawn as two triangles, and normals are interpolated within each. If the baker splits it along the "
-     "other "
-     "diagonal than the engine, the map makes up for normals that the engine does not have: an X shows on the surface.",
+     "other diagonal than the engine, the map makes up for normals that the engine does not have: an X shows on the "
+     "surface.",
      "Split the quads before baking, and export the same triangles to the engine.", ""},
     {"N801", "two-channel-in-model", model, error, true, "The image has two channels.",
-     "glTF reads x, y and z of normals from R, G and B. BC5, EAC RG11 and other files of two channels give 0 for "
-     "blue, which is z = -1. An engine that knows its own files may rebuild z; other readers of the model do not.",
+     "glTF reads x, y and z of normals from R, G and B. BC5, EAC RG11 and other files of two channels give 0 for blue, "
+     "which is z = -1. An engine that knows its own files may rebuild z; other readers of the model do not.",
      "Store the map with three components: PNG, WebP, or KTX2 with rgb8.", ""},
     {"N802", "used-as-color", model, error, true, "The image is used as a colour, too.",
      "glTF reads colours as sRGB and normals as linear values. One image cannot be both: either the lighting or the "
@@ -406,13 +392,5 @@ const Rule* find_rule(std::string_view id_or_name) {
     }
     return nullptr;
 }
-
-const Rule& rule(std::string_view id) {
-    const Rule* found = find_rule(id);
-    assert(found != nullptr);
-    return *found;
-}
-
-bool has_id(std::string_view ids, std::string_view id) { return !id.empty() && ids.find(id) != std::string_view::npos; }
 
 }  // namespace tex::inline v1

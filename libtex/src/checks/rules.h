@@ -3,14 +3,23 @@
 
 #pragma once
 
+#include <cassert>
+#include <string_view>
+
 #include <tex/check.h>
 
 namespace tex::inline v1 {
 
 // The rule `id`, which is in the table.
-const Rule& rule(std::string_view id);
+inline const Rule& rule(std::string_view id) {
+    const Rule* found = find_rule(id);
+    assert(found != nullptr);
+    return *found;
+}
 
 // Whether the list `ids`, separated by blanks, contains `id`.
-bool has_id(std::string_view ids, std::string_view id);
+inline bool has_id(std::string_view ids, std::string_view id) {
+    return !id.empty() && ids.find(id) != std::string_view::npos;
+}
 
 }  // namespace tex::inline v1
