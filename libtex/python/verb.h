@@ -84,8 +84,7 @@ private:
     // Raises BadOptionError for a number out of range, as the verb would.
     template <class T>
     void need_in(const Range& range, const char* name, const T& value) const {
-        if (!contains(range, static_cast<double>(value)))
-            raise({ErrorCode::bad_option, {}, of_ + name + ": " + requirement(range)});
+        if (!contains(range, value)) raise({ErrorCode::bad_option, {}, of_ + name + ": " + requirement(range)});
     }
     template <class T>
     void need_in(const Range& range, const char* name, const std::optional<T>& value) const {

@@ -148,11 +148,12 @@ TEST(Dds, ReadsSwizzleCodesInThePlaceOfTheFourCc) {
     EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "_yzx");
 }
 
-TEST(Dds, TakesAti2ForYFirstUnlessItSaysOtherwise) {
+TEST(Dds, TakesAti2ForXFirstUnlessItSaysOtherwise) {
     Bytes file = plain_file(Format::bc5_unorm);
     EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "xy01");
     set_field(file, kBitCountAt, 0);
-    EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "yx01");
+    EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "xy01");
+    EXPECT_TRUE(decode_bytes(file)->order_open);
     EXPECT_FALSE(decode_bytes(file)->swizzle_known);
     set_field(file, kFourCcAt, fourcc("BC5U"));
     EXPECT_EQ(to_string(decode_bytes(file)->swizzle), "xy01");

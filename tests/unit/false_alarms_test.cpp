@@ -169,7 +169,7 @@ TEST(FalseAlarms, JpegAroundGreyLeavesNoVectorsWithoutADirection) {
             }
         }
         const Ids found = ids(reference::texture_of(reference::jpeg(codes, quality)));
-        EXPECT_EQ(found.count("N215"), 1u) << quality;
+        EXPECT_EQ(found.count("N215"), 1u) << quality << ": " << testing::PrintToString(found);
         EXPECT_EQ(found.count("N205"), 0u) << quality;
     }
 }

@@ -37,7 +37,7 @@ public:
 
     template <class T>
     void operator()(const char* name, const T& value, const Range& range) {
-        if (!contains(range, static_cast<double>(value))) found(bad_option(prefix_ + name + ": " + requirement(range)));
+        if (!contains(range, value)) found(bad_option(prefix_ + name + ": " + requirement(range)));
     }
     template <class T>
     void operator()(const char* name, const std::optional<T>& value, const Range& range) {

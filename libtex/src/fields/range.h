@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 namespace tex::inline v1 {
 
@@ -32,12 +33,16 @@ inline constexpr Range kAtLeastOne{1.0};
     return interval;
 }
 
-// Whether the range accepts a value: never NaN, and no infinity.
-[[nodiscard]] inline bool contains(const Range& range, double value) {
-    if (!std::isfinite(value)) return false;
-    if (range.or_zero && value == 0.0) return true;
-    const double compared = range.of_magnitude ? std::abs(value) : value;
-    return (range.least_too ? compared >= range.least : compared > range.least) && compared <= range.greatest;
+// Whether the range accepts a value: never NaN, and no infinity. A float is compared with the ends as floats.
+template <class T>
+[[nodiscard]] bool contains(const Range& range, T value) {
+    using Compared = std::conditional_t<std::is_same_v<T, float>, float, double>;
+    if (!std::isfinite(static_cast<double>(value))) return false;
+    if (range.or_zero && value == T{}) return true;
+    const auto least = static_cast<Compared>(range.least), greatest = static_cast<Compared>(range.greatest);
+    const Compared compared =
+        range.of_magnitude ? std::abs(static_cast<Compared>(value)) : static_cast<Compared>(value);
+    return (range.least_too ? compared >= least : compared > least) && compared <= greatest;
 }
 
 // The shortest text, without the padding of exponents: "1e6".
