@@ -285,7 +285,7 @@ TEST_F(BakeNormals, AnElevationModelIsItsHeightsInOtherFiles) {
     scratch_.write("h.asc", grid);
     scratch_.write("h.pfm", pfm);
     scratch_.write("b.bil", bil);
-    scratch_.write("b.hdr", "NROWS 4\nNCOLS 5\nNBITS 16\nNODATA -1\n");
+    scratch_.write("b.hdr", "NROWS 4\nNCOLS 5\nNBITS 16\nBYTEORDER I\nNODATA -1\n");
     const std::vector<std::string> rest = {"--height-range", "1",     "--world-size",  "150",
                                            "--wrap",         "clamp", "--fill-invalid"};
     const auto baked = [&](std::vector<std::string> arguments) {

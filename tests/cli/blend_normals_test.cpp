@@ -101,7 +101,7 @@ TEST_F(BlendNormals, OneDetailGoesOnManyBases) {
 }
 
 TEST_F(BlendNormals, WhatADetailHasBesideItsNormalsIsMissedAloud) {
-    does("pack-normals", {"detail.exr", "-o", "d.png", "--format", "rgba8", "--alpha", "bricks.png:r"});
+    does("pack-normals", {"detail.exr", "-o", "d.png", "--format", "rgba8", "--alpha", "detail.exr:r"});
     const Ran ran = go("blend-normals", {"base.exr", "d.png", "-o", "x.exr"});
     EXPECT_EQ(ran.code, 0);
     EXPECT_EQ(

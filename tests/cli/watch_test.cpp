@@ -219,11 +219,11 @@ TEST_F(BuildNormalsWatch, FilesThatOptionsNameAreWatched) {
 [[rule]]
 match = "grain/*.png"
 name = "out/{{stem}}.exr"
-steps = [ {{ bake = {{}} }} ]
+steps = [ {{ bake = {{ bumpiness = 20 }} }} ]
 [[rule]]
 match = "art/*_h.png"
 name = "out/{{stem}}.png"
-steps = [ {{ bake = {{}} }}, {{ blend = {{ detail = "out/g.exr", mask = "mask.png" }} }} ]
+steps = [ {{ bake = {{ bumpiness = 20 }} }}, {{ blend = {{ detail = "out/g.exr", mask = "mask.png" }} }} ]
 )"));
     fs::create_directory(scratch_.path("grain"));
     scratch_.add_sample("waves.png", "grain/g.png");

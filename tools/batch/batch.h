@@ -68,11 +68,11 @@ public:
     // For build-normals, which decides itself about inputs and outputs, and joins steps. Command::parse() has read the
     // options.
 
-    // The task that makes `output` from `input`. Throws UsageError if the name does not show the file type, or if the
-    // file type cannot hold the format.
-    [[nodiscard]] Task task_for(const std::string& input, const std::string& output,
+    // The task that makes `path` from `input`. Throws UsageError if the name does not show the file type, or if the file
+    // type cannot hold the format.
+    [[nodiscard]] Task task_for(const std::string& input, const std::string& path,
                                 const std::string& origin = {}) const {
-        Task task{input, output};
+        Task task{input, path};
         task.origin = origin;
         return task_for(std::move(task));
     }
