@@ -86,10 +86,14 @@ void check_constant(const CheckContext& context, Findings& findings) {
 }
 
 // Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much
-// better: those of strong JPEG are a little better, too.
+// better: those of strong JPEG are a little better, too. And some vectors must point straight out: where none does, all
+// of them may be too short.
 bool holds_z_from_zero(const CheckContext& context) {
     const KindMeasure& m = context.kind_measure;
     constexpr double kUnit = 0.95, kBetter = 0.05, kMuchBetter = 0.25, kZRelated = 0.8;
+    constexpr float kUprightBlue = 0.97f;
+    const int blue = context.stored.channel(Component::z);
+    if (blue < 0 || !(context.counts.high[static_cast<std::size_t>(blue)] > kUprightBlue)) return false;
     const double unit = m.as(Reading::z_from_zero).unit, better = unit - m.as(Reading::as_stored).unit;
     const bool is_better = m.behind > kBehindShare ? better > kBetter : context.sampled_ok && better > kMuchBetter;
     return m.texels > 0 && unit > kUnit && is_better && m.z_correlation > kZRelated;
