@@ -79,8 +79,9 @@ step() {
 # compile_alone COMPILER: each source and each private header by itself. The other builds compile folders as one source,
 # which hides a missing include.
 compile_alone() {
-    cmake --preset dev -B build/alone -DBUILD_TESTING=OFF -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$results/alone.configure.log" ||
-        { cat "$results/alone.configure.log"; return 1; }
+    local log=$results/alone.configure.log
+    cmake --preset dev -B build/alone -DBUILD_TESTING=OFF -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$log" ||
+        { cat "$log"; return 1; }
     if tests/alone.py build/alone "$1"; then count alone 1 0; else count alone 1 1; return 1; fi
 }
 

@@ -34,7 +34,8 @@ async function tangentOf(rotation) {
     return [...document.getRoot().listMeshes()[0].listPrimitives()[0].getAttribute('TANGENT').getArray()].slice(0, 4);
 }
 const plain = await tangentOf(0), turned = await tangentOf(Math.PI / 2);
-console.log('@gltf-transform/functions 4.5.1: tangent', plain.join(' '), 'and, turned by 90 degrees,', turned.join(' '));
+console.log('@gltf-transform/functions 4.5.1: tangent', plain.join(' '), 'and, turned by 90 degrees,',
+            turned.join(' '));
 process.exit(plain.join() === turned.join() && Math.abs(plain[0]) === 1 ? 0 : 1);
 JS
 node look.mjs

@@ -68,8 +68,8 @@ public:
     // For build-normals, which decides itself about inputs and outputs, and joins steps. Command::parse() has read the
     // options.
 
-    // The task that makes `path` from `input`. Throws UsageError if the name does not show the file type, or if the file
-    // type cannot hold the format.
+    // The task that makes `path` from `input`. Throws UsageError if the name does not show the file type, or if the
+    // file type cannot hold the format.
     [[nodiscard]] Task task_for(const std::string& input, const std::string& path,
                                 const std::string& origin = {}) const {
         Task task{input, path};

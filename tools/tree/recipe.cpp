@@ -33,9 +33,8 @@ Converter* converter_of(Program& program) {
 
 const Row* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
     for (const Row& row : command.rows()) {
-        if (!row.hidden && row.name() == "--" + key &&
-            std::find(groups.begin(), groups.end(), row.group) != groups.end())
-            return &row;
+        const bool is_in = std::find(groups.begin(), groups.end(), row.group) != groups.end();
+        if (is_in && !row.hidden && row.name() == "--" + key) return &row;
     }
     return nullptr;
 }
@@ -58,8 +57,6 @@ std::string key_advice(const std::string& key, const std::vector<std::string>& k
     for (std::size_t at = answer.find("--"); at != std::string::npos; at = answer.find("--")) answer.erase(at, 2);
     return answer;
 }
-
-bool names_a_file(const Row& row) { return row.completes == Completes::files; }
 
 constexpr int kAnyTile = 1001;  // to try whether options fit tiles
 
@@ -170,7 +167,7 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
     std::vector<std::string> values = setting.values;
     if (values.size() > 1 && !row->repeatable) values = {join(values, ",")};
     for (const std::string& value : values) {
-        if (names_a_file(*row) && value == "-") fail("standard input cannot be a file of a manifest");
+        if (row->completes == Completes::files && value == "-") fail("standard input cannot be a file of a manifest");
         arguments.push_back(fmt::format("{}={}", row->name(), value));
     }
 }
@@ -180,7 +177,7 @@ std::string Recipe::with_root(const std::string& argument, const Command& comman
     const auto [name, value] = cut(argument, '=');
     const Row* const row = row_of(command, name.substr(2), groups_of(command));
     // {dir} is that of the input, which is below the root. Files to write get their places later.
-    const bool is_below = !root_.empty() && row != nullptr && names_a_file(*row) && !row->writes &&
+    const bool is_below = !root_.empty() && row != nullptr && row->completes == Completes::files && !row->writes &&
                           is_file(value, *row) && !fs::path(value).has_root_path() && !value.starts_with("{dir}");
     return is_below ? fmt::format("{}={}/{}", name, root_, value) : argument;
 }
