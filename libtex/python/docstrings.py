@@ -52,7 +52,7 @@ SENTENCES = (
     ("layout_name", "The name in kSwizzleNames of the layout", "The name of the layout"),
     ("layout_name", "the letters of to_string().", "its letters."),
     ("pack_file", "Memory holds a few rows, the additional data that bake_file() lists for interlaced PNGs and for outputs, "
-     "and the plane that RoughnessFile.map returns.",
+     "and what RoughnessFile.map and RoughnessFile.kept return.",
      "Memory holds a few rows, and the additional data that bake_file() lists for interlaced PNGs and for outputs."),
     ("pack_file", " The roughness files appear after the normal map files.", ""),
     ("read_mesh", "Every part of the result passes check_part(); there is at least one part.",
