@@ -39,7 +39,7 @@ private:
 
 // trace_rays(), until the work is not fair any more. The hits of the other rays are unchanged.
 void trace_fairly(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits, RayWork& work);
-// The same of find_blocked().
+// find_blocked(), likewise.
 void find_blocked_fairly(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked,
                          RayWork& work);
 
