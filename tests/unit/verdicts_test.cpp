@@ -97,6 +97,27 @@ TEST(Verdicts, PicturesOfAnyHueAreNoNormalMaps) {
     }
 }
 
+TEST(Verdicts, AShareOfNothingIsPrintedAsZero) {
+    const auto brown = [](int i, int j) {
+        const int s = shade(i, j) / 3;
+        return std::array<int, 4>{70 + s, 45 + s / 2, 30 + s / 3, 255};
+    };
+    const auto report = check("picture", reference::texture_of(picture(128, 3, brown)));
+    ASSERT_TRUE(report && report->findings.size() == 1u);
+    EXPECT_EQ(report->findings[0].message.find("0.000000"), std::string::npos) << report->findings[0].message;
+}
+
+TEST(Verdicts, VectorsThatAreAllTooShortHoldNoZFromZero) {
+    const auto shortened = [](int i, int j) {
+        std::array<int, 4> c = wave(i, j);
+        for (std::size_t k = 0; k < 3; ++k) c[k] = 128 + (c[k] - 128) * 85 / 100;
+        return c;
+    };
+    const Ids found = ids(picture(128, 3, shortened), Severity::note);
+    EXPECT_TRUE(found.contains("N201")) << testing::PrintToString(found);
+    EXPECT_FALSE(found.contains("N221"));
+}
+
 TEST(Verdicts, GreyWithAlphaIsNoLayoutOfNormals) {
     EXPECT_EQ(ids(picture(64, 4,
                           [](int i, int j) {

@@ -93,7 +93,7 @@ std::string decimal(double value, int decimals) {
 
 std::string percent(double share) {
     const double value = 100.0 * share;
-    return decimal(value, value >= 10.0 ? 0 : value >= 0.1 ? 1 : value >= 0.001 ? 3 : 6) + " %";
+    return decimal(value, value >= 10.0 || value == 0.0 ? 0 : value >= 0.1 ? 1 : value >= 0.001 ? 3 : 6) + " %";
 }
 
 std::string extent_text(Extent extent) { return std::to_string(extent.width) + "x" + std::to_string(extent.height); }

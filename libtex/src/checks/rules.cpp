@@ -102,7 +102,7 @@ constexpr Rule kRules[] = {
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
      "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED",
-     "N115 N201 N202 N205 N207 N213 N214 N215 N220"},
+     "N115 N201 N202 N205 N207 N213 N214 N215 N219 N220 N305 N310 N402"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
