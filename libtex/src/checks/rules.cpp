@@ -102,7 +102,7 @@ constexpr Rule kRules[] = {
      "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
      "that do not rebuild z get bent normals.",
      "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED",
-     "N115 N201 N202 N205 N207 N213 N214 N215 N219 N220 N305 N310 N402"},
+     "N115 N201 N202 N205 N207 N213 N214 N215 N220"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
      "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
@@ -164,7 +164,7 @@ constexpr Rule kRules[] = {
      "z is below 0 nearly everywhere, while x and y lie about 0, as in tangent space. An exporter or an image editor "
      "inverted blue. Lit from the front, the surface is black.",
      "Read the map with --swizzle rg, which rebuilds z, or invert blue in an image editor.",
-     "N115 N201 N202 N205 N207 N213 N214 N215 N219 N305 N310 N402"},
+     "N115 N201 N202 N205 N207 N213 N214 N215 N305 N310 N402"},
     {"N221", "blue-from-zero", values, warning, true, "Blue holds z from 0 to 1.",
      "Vectors are of unit length if z is blue, and not if it is 2 blue - 1. Readers that do not rebuild z get bent "
      "normals, which point into the surface where it is steep.",
