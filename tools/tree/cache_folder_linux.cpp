@@ -24,6 +24,7 @@
 #include "files/system_error.h"
 #include "options/files.h"
 #include "tasks/folders.h"
+#include "tree/opened_linux.h"
 
 namespace tex::cli {
 namespace {
@@ -38,22 +39,6 @@ constexpr std::string_view kTagText =
     "# For information about cache directory tags see https://bford.info/cachedir/\n";
 
 std::string mark_text() { return fmt::format("{} {}\n", kMark, kCacheVersion); }
-
-// A file or folder that is open.
-class Opened {
-public:
-    explicit Opened(int fd) : fd_(fd) {}
-    Opened(const Opened&) = delete;
-    Opened& operator=(const Opened&) = delete;
-    ~Opened() {
-        if (fd_ >= 0) close(fd_);
-    }
-    [[nodiscard]] int get() const { return fd_; }
-    explicit operator bool() const { return fd_ >= 0; }
-
-private:
-    const int fd_;
-};
 
 constexpr int kFolderFlags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
 

@@ -6,32 +6,16 @@
 #include <cerrno>
 #include <cstddef>
 #include <filesystem>
-#include <utility>
 #include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "tree/opened_linux.h"
+
 namespace tex::cli {
 namespace {
-
-// A file or folder that is open.
-class Descriptor {
-public:
-    explicit Descriptor(int fd) : fd_(fd) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    ~Descriptor() {
-        if (fd_ >= 0) close(fd_);
-    }
-    [[nodiscard]] int get() const { return fd_; }
-    explicit operator bool() const { return fd_ >= 0; }
-    void become(int fd) { const Descriptor before(std::exchange(fd_, fd)); }
-
-private:
-    int fd_;
-};
 
 Removal absence() { return errno == ENOENT ? Removal::missing : Removal::changed; }
 
@@ -51,7 +35,7 @@ bool has_sum(int fd, const Digest& digest) {
 
 Removal remove_output(const std::string& folder, const std::string& name, const Digest& digest, bool is_dry_run) {
     constexpr int kFlags = O_RDONLY | O_CLOEXEC;
-    Descriptor at(open(folder.empty() ? "." : folder.c_str(), kFlags | O_DIRECTORY));
+    Opened at(open(folder.empty() ? "." : folder.c_str(), kFlags | O_DIRECTORY));
     const std::filesystem::path path(name);
     for (const std::filesystem::path& part : path.parent_path()) {
         if (at) at.become(openat(at.get(), part.c_str(), kFlags | O_DIRECTORY | O_NOFOLLOW));
@@ -59,7 +43,7 @@ Removal remove_output(const std::string& folder, const std::string& name, const 
     if (!at) return absence();
     const std::string last = path.filename();
     // O_NONBLOCK: a FIFO must not keep us waiting.
-    const Descriptor file(openat(at.get(), last.c_str(), kFlags | O_NOFOLLOW | O_NONBLOCK));
+    const Opened file(openat(at.get(), last.c_str(), kFlags | O_NOFOLLOW | O_NONBLOCK));
     if (!file) return absence();
     struct stat status {};
     if (fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode) || !has_sum(file.get(), digest))
