@@ -5,7 +5,8 @@
 # The first table has a row for each rule: in how many files it was found when the verdicts were made ("before") and is
 # found now, how many of these were judged false, and how many pictures without a verdict have it now alone. The second
 # has the files by kind, separately for the half that sets thresholds (the first byte of the SHA-256 of the name is
-# even) and for the half that is held out. With --files, all files whose errors and warnings differ follow.
+# even) and for the half that is held out; "class" counts the files that --classify puts where the verdict does. With
+# --files, all files whose errors, warnings or classes differ follow.
 #
 # The exit status is 1 if a map has an error that its verdict calls false, if a map without a verdict has an error that
 # it did not have, or if a picture that is no normal map has none. Where the data are missing, it says so and passes.
@@ -18,6 +19,7 @@ import sys
 import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+COLUMNS = ["files", "error", "warning", "wrong", "class"]
 DATA = os.path.join(os.path.dirname(ROOT), "shared", "data", "wild4")
 
 
@@ -34,13 +36,14 @@ def findings_now(build, files):
         names.flush()
         command = [os.path.join(build, "check-normals"), "--json", "--files-from", names.name]
         output = subprocess.run(command, capture_output=True, text=True, check=False).stdout
-    found = {}
+    found, classes = {}, {}
     for line in output.splitlines():
         report = json.loads(line)
         if "input" in report:
-            found[os.path.relpath(report["input"], DATA)] = {
-                finding["id"] + finding["severity"][0] for finding in report["findings"]}
-    return found
+            file = os.path.relpath(report["input"], DATA)
+            found[file] = {finding["id"] + finding["severity"][0] for finding in report["findings"]}
+            classes[file] = report.get("kind", "unknown")
+    return found, classes
 
 
 def is_tune(file):
@@ -52,7 +55,7 @@ def main():
         print("skipped: there is no ../shared/data/wild4")
         return 0
     rows = list(labels())
-    now = findings_now(sys.argv[1], [row["file"] for row in rows])
+    now, classes = findings_now(sys.argv[1], [row["file"] for row in rows])
     rules = collections.defaultdict(collections.Counter)
     kinds = collections.defaultdict(collections.Counter)
     bad, changed = [], []
@@ -73,6 +76,10 @@ def main():
         part = kinds["picture" if is_picture else row["kind"], "tune" if is_tune(file) else "held out"]
         part["files"] += 1
         part["error"] += has_error
+        is_normal = classes.get(file, "unknown") in ("normals", "object-space", "one-colour", "unknown")
+        part["class"] += is_normal != is_picture or is_picture and classes.get(file) == "one-colour"
+        if "--files" in sys.argv and is_normal == is_picture:
+            print(f"class: {file} {classes.get(file)}  ({verdict})")
         part["warning"] += any(finding[-1] == "w" for finding in after)
         wrong = is_picture and not has_error or any(
             finding[-1] == "e" and (finding[:-1] in false or finding not in before) for finding in after
@@ -86,11 +93,11 @@ def main():
     print(f"{'finding':10}" + "".join(f"{name:>14}" for name in columns))
     for finding in sorted(rules):
         print(f"{finding:10}" + "".join(f"{rules[finding][name]:14}" for name in columns))
-    print(f"\n{'kind':22}" + "".join(f"{name:>10}" for name in ["files", "error", "warning", "wrong"]))
+    print(f"\n{'kind':22}" + "".join(f"{name:>10}" for name in COLUMNS))
     for kind in sorted(kinds):
         part = kinds[kind]
         print(f"{kind[0] + ', ' + kind[1]:22}" +
-              "".join(f"{part[name]:10}" for name in ["files", "error", "warning", "wrong"]))
+              "".join(f"{part[name]:10}" for name in COLUMNS))
     if "--files" in sys.argv:
         print()
         for file, before, after, verdict in changed:

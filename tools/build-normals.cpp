@@ -13,6 +13,7 @@
 #include "tree/builder.h"
 #include "tree/explain.h"
 #include "tree/farm.h"
+#include "tree/init.h"
 #include "tree/manifest.h"
 #include "tree/recipe.h"
 #include "tree/watch.h"
@@ -36,6 +37,7 @@ private:
     std::string root_;
     std::string explain_;
     bool watch_ = false;
+    bool init_ = false;
     cli::BuildOptions build_;
     cli::Farm farm_;
     cli::RunOptions running_;
@@ -44,6 +46,7 @@ private:
 BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.usage("[MANIFEST]");
     command.usage("[MANIFEST] --explain FILE");
+    command.usage("[MANIFEST] --init");
     command.input("MANIFEST", "what to build (default: normals.toml)");
     command.finds_things();
     command.group("Build");
@@ -55,6 +58,8 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.text(explain_, "--explain", "FILE", "print the rule, the settings and the command lines for one file")
         .often(1, "print the rule, the settings and the command lines")
         .completes = cli::Completes::files;
+    command.flag(init_, "--init", "write a manifest for the pictures that are here, and a baseline for check-normals")
+        .often(1, "write a manifest for the pictures that are here");
     command.flag(watch_, "--watch", "stay, and build what is saved, until interrupted")
         .often(1, "stay, and build what is saved, until interrupted");
     command.flag(build_.prune, "--prune", "remove outputs that no rule makes any more")
@@ -73,11 +78,14 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     farm_.add(command);
     running_.add(command);
     command.example("build-normals", "Reads normals.toml and brings every output up to date.");
+    command.example("build-normals --init", "Writes normals.toml for the pictures below this folder.");
     command.example("build-normals --dry-run", "What would be made, and why.");
     command.example("build-normals art/normals.toml --explain art/wall_h.png", "Everything about one file.");
     command.example("build-normals --watch --no-sync", "Builds what is saved, while people work.");
     command.check([this] {
         if (command.inputs().size() > 1 && !farm_.merges()) throw cli::UsageError("give one manifest");
+        if (init_ && (build_.dry_run || build_.prune || watch_ || !explain_.empty() || farm_.is_used() || farm_.merges()))
+            throw cli::UsageError("--init only writes a manifest: it goes without --dry-run, --prune, --watch ...");
         if (watch_ && (build_.dry_run || !explain_.empty()))
             throw cli::UsageError("--watch goes neither with --dry-run nor with --explain");
         if (watch_ && farm_.is_used()) throw cli::UsageError("--watch and --plan exclude each other");
@@ -103,6 +111,8 @@ Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console
     namespace fs = std::filesystem;
     const std::string path = manifest();
     auto text = cli::read_toml_file(path);
+    if (!text && command.inputs().empty() && !std::filesystem::exists(path))
+        return Error{text.error().code, path, text.error().reason + "; build-normals --init writes one"};
     if (!text) return text.error();
     auto tree = std::make_unique<cli::BuildTree>();
     tree->text = std::move(*text);
@@ -154,6 +164,7 @@ cli::ExitCode BuildNormals::watch(cli::Console& console) {
 cli::ExitCode BuildNormals::work(cli::Console& console) {
     if (running_.quiet) console.be_quiet();
     if (watch_) return watch(console);
+    if (init_) return cli::init_tree(root_, manifest(), running_, console);
     if (const auto plan = farm_.read_plan(); !plan) return failed(plan.error(), console);
     const auto loaded = read(console);
     if (!loaded) return failed(loaded.error(), console);

@@ -18,6 +18,7 @@
 #include "reports/check_documents.h"
 #include "reports/findings.h"
 #include "reports/github.h"
+#include "reports/kinds.h"
 
 namespace {
 
@@ -34,6 +35,8 @@ private:
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] Result<void> process_model(cli::Job& job);
     [[nodiscard]] Result<CheckReport> check_one(cli::Job& job, CheckOptions checks, const Execution& execution);
+    // Prints what the picture holds, and returns it as JSON.
+    [[nodiscard]] Result<cli::Json> classify(cli::Job& job, CheckReport& report);
     // Prints a report and adds it to the documents, and returns it as JSON.
     [[nodiscard]] Result<cli::Json> judge(cli::Job& job, CheckReport report, double seconds, const cli::MapOnMesh* mesh,
                                           const cli::CheckDocuments::ReadTexture& read);
@@ -46,6 +49,8 @@ private:
     cli::CheckDocuments documents_;
     std::mutex mutex_;
     cli::CheckTotals totals_;
+    bool classifies_ = false;
+    cli::KindTotals kinds_;
 };
 
 CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
@@ -54,11 +59,15 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     command.input("FILE...", "textures and pictures of normals, and glTF models with their maps; - is standard input");
     command.finds_things();
     rules_.add(command);
+    command.flag(classifies_, "--classify", "print what each picture holds: normals, heights, colours, ...")
+        .often(2, "print what each picture holds: normals, heights, colours ...");
     mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
         if (running.json && documents_.is_for_github())
             throw cli::UsageError("--json and --github contradict each other");
+        if (classifies_ && (documents_.are_written() || documents_.is_for_github()))
+            throw cli::UsageError("--classify judges nothing: it goes without --report, --sarif, --baseline ...");
         if (!reads_nothing()) return;
         if (!command.inputs().empty()) throw cli::UsageError("--list and --explain take no files");
         if (documents_.has_page()) throw cli::UsageError("--list and --explain write no --report");
@@ -126,6 +135,7 @@ Result<CheckReport> CheckNormals::check_one(cli::Job& job, CheckOptions checks, 
 
 Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double seconds, const cli::MapOnMesh* mesh,
                                       const cli::CheckDocuments::ReadTexture& read) {
+    if (classifies_) return classify(job, report);
     const cli::Demands& demands = rules_.demands_of(job.task.input);
     std::vector<Finding> waived = documents_.accept(report);
     const auto known = static_cast<int>(waived.size());
@@ -151,6 +161,15 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
     const cli::JudgedReport judged{std::move(report), require, demands.fail_on, std::move(waived), seconds};
     if (auto added = documents_.add(job, judged, mesh, read); !added) return added.error();
     return json;
+}
+
+Result<cli::Json> CheckNormals::classify(cli::Job& job, CheckReport& report) {
+    if (report.error) job.raise(cli::exit_code(report.error->code));
+    report.findings.clear();
+    job.say(cli::kind_text(report));
+    const std::lock_guard lock(mutex_);
+    kinds_.add(report);
+    return cli::findings_json(report, {});
 }
 
 Result<void> CheckNormals::process(cli::Job& job) {
@@ -247,7 +266,7 @@ Result<cli::Json> CheckNormals::judge_in_model(cli::Job& job, CheckReport report
 }
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {
-    const std::string summary = totals_.text();
+    const std::string summary = classifies_ ? kinds_.text() : totals_.text();
     const cli::ExitCode printed = running.json ? cli::ExitCode::done : console.print(summary + "\n");
     return std::max(printed, documents_.write(console, summary));
 }

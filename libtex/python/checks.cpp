@@ -19,6 +19,7 @@ struct Checking {
     py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
     py::object height = py::none(), mesh = py::none();
     bool any_length = false;
+    std::optional<Swizzle> swizzle;
     Decoder decoder = Decoder::gltf;
 };
 
@@ -32,6 +33,7 @@ void each_field(Checking& o, F& f) {
     f("mesh", o.mesh, "SelectedPart | None");
     f("decoder", o.decoder);
     f("any_length", o.any_length);
+    f("swizzle", o.swizzle);
 }
 
 // The keywords of check_model().
@@ -111,6 +113,7 @@ void read_checks(const Checking& given, Checks& checks) {
     options.enable = rules_from(given.enable, "enable");
     options.disable = rules_from(given.disable, "disable");
     options.any_length = given.any_length;
+    options.swizzle = given.swizzle;
     if (!given.severity.is_none()) {
         for (const auto& [rule, word] : dict_from(given.severity, "severity"))
             options.severity.emplace_back(text_from(rule, "severity"), Convert<Severity>::from(word, "severity"));
@@ -224,6 +227,12 @@ void add_report(Module& module) {
                   [](const CheckReport& r) { return layout_name(r.swizzle); })
         .property("extent", "tuple[int, int]", "(width, height) of the base level.",
                   [](const CheckReport& r) { return tuple_of(r.extent); })
+        .property("kind", "str",
+                  "What the picture holds: 'normals', 'object-space', 'heights', 'grey' (of 8 bits), 'colour', 'data', "
+                  "'one-colour', or 'unknown'.",
+                  [](const CheckReport& r) { return word_of(r.kind); })
+        .property("kind_confidence", "float", "That it is that kind, from 0.5 to 1.",
+                  [](const CheckReport& r) { return r.kind_confidence; })
         .property("levels", "int", "The number of levels.", [](const CheckReport& r) { return r.levels; })
         .property("more_data", "bool", "A channel varies that holds no component of the normals.",
                   [](const CheckReport& r) { return r.more_data; })
@@ -272,7 +281,8 @@ void add_checks(Module& module) {
         "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
         "dict "
         "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
-        "select_part(), and `decoder` the engine; with `any_length`, no rule judges the lengths of vectors. Raises "
+        "select_part(), and `decoder` the engine; with `any_length`, no rule judges the lengths of vectors, and "
+        "`swizzle` names the layout. Raises "
         "BadOptionError if a rule or a requirement "
         "does not exist.",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {

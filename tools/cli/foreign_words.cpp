@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/text.h"
 #include "cli/value.h"
 
 namespace tex::cli {
@@ -113,12 +114,6 @@ bool has_name(std::string_view names, std::string_view name) {
     return std::find(all.begin(), all.end(), name) != all.end();
 }
 
-std::string small_letters(std::string_view word) {
-    std::string text(word);
-    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return text;
-}
-
 // Whether the command has every option of an answer. Those behind the name of another command are that one's.
 bool applies(std::string_view answer, const std::function<bool(std::string_view option)>& has) {
     if (answer.empty() || answer.find("-normals ") != std::string_view::npos) return !answer.empty();
@@ -154,7 +149,7 @@ std::string foreign_word_answer(std::string_view name, const std::vector<std::st
     const auto known = [&words](std::string_view word) {
         return std::find(words.begin(), words.end(), word) != words.end();
     };
-    const std::string small = small_letters(name);
+    const std::string small = lower_case(std::string(name));
     for (const ForeignWord& row : kForeignWords) {
         if (has_name(row.names, small) && known(row.word)) return fmt::format("; here it is {}", row.word);
     }
@@ -162,7 +157,7 @@ std::string foreign_word_answer(std::string_view name, const std::vector<std::st
 }
 
 std::string unwritten_type_answer(std::string_view name) {
-    const std::string small = small_letters(name);
+    const std::string small = lower_case(std::string(name));
     for (const UnwrittenType& row : kUnwrittenTypes) {
         if (has_name(row.names, small))
             return fmt::format("; {} is not written: make n.png, then run {}", small, row.command);
@@ -171,7 +166,7 @@ std::string unwritten_type_answer(std::string_view name) {
 }
 
 std::string common_word(std::string word) {
-    word = small_letters(word);
+    word = lower_case(std::string(word));
     for (const ForeignWord& row : kForeignWords) {
         if (row.is_same && has_name(row.names, word)) return std::string(row.word);
     }

@@ -103,6 +103,11 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
     return name.empty() ? std::string() : fmt::format("; did you mean {}?", name);
 }
 
+std::string lower_case(std::string text) {
+    for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
 std::string join(const std::vector<std::string>& words, std::string_view between) {
     return fmt::format("{}", fmt::join(words, between));
 }

@@ -19,6 +19,9 @@ namespace tex::cli {
 // "; did you mean X?" for the nearest candidate, or nothing.
 [[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+// A to Z become a to z; all else stays.
+[[nodiscard]] std::string lower_case(std::string text);
+
 // "a, b, c".
 [[nodiscard]] std::string join(const std::vector<std::string>& words, std::string_view between = ", ");
 

@@ -44,7 +44,8 @@ private:
     }
 
     void check_keys(const toml::table& table, const std::vector<std::string>& more) const {
-        std::vector<std::string> known = {"require", "length-in", "enable", "disable", "fail-on", "severity"};
+        std::vector<std::string> known = {"require", "swizzle", "length-in", "enable",
+                                          "disable", "fail-on", "severity"};
         known.insert(known.end(), more.begin(), more.end());
         for (const auto& [key, node] : table) {
             const std::string name(key.str());
@@ -89,6 +90,14 @@ private:
                 node->is_string() ? find_by_name(kLengthInNames, node->as_string()->get()) : std::nullopt;
             if (!found) fail(*node, fmt::format("length-in must be {}", join(names_of(words_of(kLengthInNames)))));
             options.any_length = true;
+        }
+        if (const toml::node* node = table.get("swizzle")) {
+            if (!node->is_string()) fail(*node, "swizzle must be a string");
+            try {
+                options.swizzle = parse_swizzle(node->as_string()->get());
+            } catch (const UsageError& error) {
+                fail(*node, fmt::format("swizzle: {}", error.what()));
+            }
         }
         for (const auto& [text, node] : strings(table, "enable")) {
             options.enable.push_back(rule_name(text, *node));

@@ -14,6 +14,9 @@ namespace tex::cli {
 namespace {
 
 constexpr const char* kMeasured = "measured";
+constexpr const char* kAutomatic = "auto";
+constexpr const char* kRedOrAlpha = "rgorag";
+constexpr const char* kLabPbr = "labpbr";
 
 std::string guess_text(const std::string& layout) {
     // A grey picture with alpha has the texels of such a map with y in R, G and B.
@@ -104,6 +107,23 @@ void report_input(Job& job, const SourceInfo& info) {
     job.report["source"] = {{"format", name_of(kFormatNames, info.format)}, {"swizzle", layout_name(info.swizzle)}};
 }
 
+std::optional<Swizzle> parse_swizzle(const std::string& text, const std::vector<std::string>& more) {
+    std::vector<std::string> names = names_of(words_of(kSwizzleNames));
+    names.insert(names.end(), {kAutomatic, kLabPbr});
+    names.insert(names.end(), more.begin(), more.end());
+    const bool is_name = std::find(names.begin(), names.end(), text) != names.end();
+    if (const auto channels = swizzle_of_channels(text); channels && !is_name) return channels;
+    const std::string word = known_word(text, names);
+    return word == kLabPbr ? kSwizzleXy : find_by_name(kSwizzleNames, word);
+}
+
+std::vector<Word> swizzle_words() {
+    std::vector<Word> words = words_of(kSwizzleNames);
+    words.insert(words.begin(), {kAutomatic, "as the file says, else guessed from the texels"});
+    words.push_back({kLabPbr, "as rg: x in R, y in G, occlusion in B and height in A (Minecraft)"});
+    return words;
+}
+
 void add_length_in(Command& command, std::optional<LengthIn>& length_in) {
     command.choice(length_in, "--length-in", "WHAT", kLengthInNames, "what the lengths of vectors in the input hold")
         .preset = "nothing: they are 1";
@@ -134,18 +154,11 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_othe
     Row& row =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) {
-                           std::vector<std::string> names = names_of(words_of(kSwizzleNames));
-                           names.insert(names.end(), {"auto", "rgorag"});
-                           rg_or_ag = false;
-                           swizzle = swizzle_of_channels(text);
-                           if (swizzle && std::find(names.begin(), names.end(), text) == names.end()) return;
-                           const std::string word = known_word(text, names);
-                           swizzle = find_by_name(kSwizzleNames, word);
-                           rg_or_ag = word == "rgorag";
+                           swizzle = parse_swizzle(text, {kRedOrAlpha});
+                           rg_or_ag = text == kRedOrAlpha;
                        });
-    row.words = words_of(kSwizzleNames);
-    row.words.insert(row.words.begin(), {"auto", "as the file says, else guessed from the texels"});
-    row.words.push_back({"rgorag", "x in R or A, whichever varies, y in G: R * A in a shader"});
+    row.words = swizzle_words();
+    row.words.push_back({kRedOrAlpha, "x in R or A, whichever varies, y in G: R * A in a shader"});
     row.preset = "auto";
     row.completes = Completes::words;
     command.choice(bc5_order, "--bc5-order", "ORDER", kBc5OrderNames, "the channels of BC5 files that do not say")

@@ -39,6 +39,12 @@ inline constexpr Named<LengthIn> kLengthInNames[] = {
     {LengthIn::ignore, "ignore", "nothing: vectors become unit"},
 };
 
+// The layout that a word of kSwizzleNames, "labpbr" or the channels of x, y and, if it is stored, z name: "abg",
+// "x=a,y=b,z=g". Nothing for "auto" and the words of `more`. Throws UsageError if it is none of these.
+std::optional<Swizzle> parse_swizzle(const std::string& text, const std::vector<std::string>& more = {});
+// What --swizzle takes.
+std::vector<Word> swizzle_words();
+
 // --length-in.
 void add_length_in(Command& command, std::optional<LengthIn>& length_in);
 

@@ -61,6 +61,11 @@ void RuleOptions::add(Command& command) {
             names.push_back(text);
         };
     };
+    Row& layout = command.option("--swizzle", "S", "which channels hold x and y: labpbr, rg, dxt5nm ..., or ag",
+                                 [this](const std::string& text) { swizzle_ = parse_swizzle(text); });
+    layout.words = swizzle_words();
+    layout.preset = "auto";
+    layout.completes = Completes::words;
     add_length_in(command, length_in_);
     command.option("--enable", "ID", "check a rule (id or name) that is off by default", name_into(given_.enable))
         .repeatable = true;
@@ -101,6 +106,7 @@ Demands RuleOptions::merged(const CheckSettings& settings, const Command& comman
         if (!checks.require.y) checks.require.y = engine_->y;
     }
     checks.any_length = checks.any_length || length_in_;
+    if (swizzle_) checks.swizzle = *swizzle_;
     append(checks.enable, given_.enable);
     append(checks.severity, given_.severity);
     // A rule may appear with its id in one place and with its name in the other.

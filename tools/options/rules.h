@@ -26,7 +26,8 @@ struct Demands {
     [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on; }
 };
 
-// --require, --for, --length-in, --enable, --disable, --severity, --config, --fail-on, --height, --list, --explain.
+// --require, --for, --swizzle, --length-in, --enable, --disable, --severity, --config, --fail-on, --height, --list,
+// --explain.
 class RuleOptions {
 public:
     void add(Command& command);
@@ -54,8 +55,9 @@ private:
     std::vector<std::string> required_;  // --require
     const Engine* engine_ = nullptr;     // --for
     std::optional<LengthIn> length_in_;
-    std::string config_, height_file_;          // paths, or empty
-    Severity least_failing_ = Severity::error;  // --fail-on
+    std::optional<std::optional<Swizzle>> swizzle_;  // --swizzle; of "auto", nothing
+    std::string config_, height_file_;               // paths, or empty
+    Severity least_failing_ = Severity::error;       // --fail-on
     bool list_ = false;
     const Rule* explain_ = nullptr;
 

@@ -86,6 +86,8 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
     } else {
         json["format"] = name_of(kFormatNames, report.format);
         json["swizzle"] = layout_name(report.swizzle);
+        json["kind"] = name_of(kPictureKindNames, report.kind);
+        json["kind_confidence"] = static_cast<float>(report.kind_confidence);
         json["extent"] = {report.extent.width, report.extent.height};
         json["levels"] = report.levels;
         json["y"] = {{"measured", report.y.y ? Json(name_of_y(*report.y.y)) : Json()},

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <system_error>
 
+#include "cli/text.h"
 #include "files/path_names.h"
 
 namespace tex::cli {
@@ -14,8 +15,7 @@ namespace tex::cli {
 std::vector<std::string> other_parts(const std::string& name, const std::string& path) {
     namespace fs = std::filesystem;
     constexpr const char* kExtensions[] = {".bil", ".bip", ".bsq", ".flt"};
-    std::string extension = slashed(fs::path(name).extension());
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+    const std::string extension = lower_case(slashed(fs::path(name).extension()));
     if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions)) return {};
     for (const char* header : {".hdr", ".HDR"}) {  // as the reader looks for it
         std::error_code error;

@@ -189,9 +189,10 @@ struct CheckOptions {
     std::vector<std::string> disable;                        // takes precedence over enable
     std::vector<std::pair<std::string, Severity>> severity;  // by id or name; the last one applies
     bool any_length = false;                                 // lengths are data, or do not matter: no rule judges them
-    const HeightField* height = nullptr;                     // the map's heights, for the rules of the pair; not owned
-    const MeshToCheck* mesh = nullptr;                       // the mesh that the map is on; not owned
-    const MapInModel* model = nullptr;                       // the model that uses the map; not owned
+    std::optional<Swizzle> swizzle = {};  // the channels of x, y and z; none: as guess_swizzle() and the texels say
+    const HeightField* height = nullptr;  // the map's heights, for the rules of the pair; not owned
+    const MeshToCheck* mesh = nullptr;    // the mesh that the map is on; not owned
+    const MapInModel* model = nullptr;    // the model that uses the map; not owned
 };
 
 // Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
@@ -247,6 +248,21 @@ struct SeamEvidence {
     double usual = 0.0;
 };
 
+// What a picture holds, as its texels show. Grey pictures of 8 bits may be heights, roughness or occlusion: nothing in
+// them tells.
+enum class PictureKind { unknown, normals, object_space, heights, grey, colors, data, constant };
+
+inline constexpr Named<PictureKind> kPictureKindNames[] = {
+    {PictureKind::unknown, "unknown", "cannot be decoded"},
+    {PictureKind::normals, "normals", "normals in tangent space"},
+    {PictureKind::object_space, "object-space", "normals in object space"},
+    {PictureKind::heights, "heights", "heights: grey with more than 8 bits, or an elevation model"},
+    {PictureKind::grey, "grey", "grey of 8 bits: heights, roughness, occlusion or a mask"},
+    {PictureKind::colors, "colour", "colours"},
+    {PictureKind::data, "data", "other data in several channels, such as occlusion, roughness and metalness"},
+    {PictureKind::constant, "one-colour", "one colour"},
+};
+
 struct CheckReport {
     std::string file;
     std::string map = {};           // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
@@ -257,6 +273,8 @@ struct CheckReport {
     // What the file is, if it could be read.
     Format format = Format::rgba8_unorm;
     Swizzle swizzle{};  // guess_swizzle(): what the file states or the texels suggest
+    PictureKind kind = PictureKind::unknown;
+    double kind_confidence = 0.5;  // that it is that kind, 0.5 to 1
     Extent extent;
     int levels = 0;
     bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask

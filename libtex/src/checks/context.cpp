@@ -88,6 +88,10 @@ Result<void> decide_kind(CheckContext& context) {
         if (*kind == Kind::no_map) context.kind_measure = without;
     }
     context.kind = *kind;
+    if (context.options.swizzle) {  // says which channels are whose
+        if (context.kind != Kind::no_map) context.kind = Kind::normals;
+        return {};
+    }
     // Around charts on grey, JPEG leaves vectors of all directions.
     const bool has_value = context.background && context.background->texels > 0;
     if (context.kind == Kind::two_components && has_value && !context.kind_measure.alpha_varies)
@@ -112,8 +116,12 @@ Result<void> measure(CheckContext& context) {
     auto image = decode_planes(context.texture, context.texture.levels.front(), needs, context.execution);
     if (!image) return image.error();
     context.base = std::move(*image);
-    const auto swizzle = guess_swizzle(context.texture, context.execution);
+    const Result<Swizzle> swizzle = context.options.swizzle ? Result<Swizzle>(*context.options.swizzle)
+                                                            : guess_swizzle(context.texture, context.execution);
     if (!swizzle) return swizzle.error();
+    if (context.options.swizzle) {
+        if (auto held = sources_of(*swizzle, (1u << context.base.planes.size()) - 1); !held) return held.error();
+    }
     context.stored = {&context.base, *swizzle,
                       stores_signed(context.base, *swizzle, range_of(context.texture.normal_encoding, {})),
                       format_info(context.texture.format).has_blocks()};

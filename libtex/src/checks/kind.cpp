@@ -229,10 +229,11 @@ bool are_damaged_vectors(const KindMeasure& m) {
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
-    const bool is_level = m.level > thresholds::kLevelShare || m.as(Reading::as_stored).z > thresholds::kUprightMedian;
+    const bool is_upright = m.as(Reading::as_stored).z > thresholds::kUprightMedian;
+    const bool is_level = m.level > thresholds::kLevelShare || is_upright;
     if (std::abs(relation_of(m)) > (is_level ? thresholds::kColorRelated : thresholds::kTwoRelated)) return false;
     const double variance = m.deviation_x * m.deviation_x + m.deviation_y * m.deviation_y;
-    if (variance > thresholds::kTwoVariance && !is_surface) return false;
+    if (variance > thresholds::kTwoVariance && !is_surface && !is_upright) return false;
     return off <= thresholds::kTwoCentred || (is_surface && off <= thresholds::kSurfaceCentred);
 }
 
@@ -286,7 +287,10 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (m.texels < kLeastTexels) return Kind::normals;
     const auto& planes = stored.image->planes;
     if (!stored.has_z()) {
-        if (planes.size() < 4 || stored.channel(Component::x) != 3) return Kind::normals;
+        if (planes.size() < 3) return Kind::normals;
+        if (stored.channel(Component::x) != 3)
+            return m.grey <= thresholds::kGreyTexels && are_two_components(m, is_surface) ? Kind::normals
+                                                                                          : Kind::no_map;
         // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures.
         const bool has_grey =
             !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
@@ -312,10 +316,11 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     return is_other && is_faulty ? Kind::two_components : Kind::normals;
 }
 
-std::string evidence_text(const KindMeasure& m) {
+std::string evidence_text(const KindMeasure& m, bool has_z) {
     const KindMeasure::Vectors& v = m.as(Reading::as_stored);
-    return percent(v.unit) + " of the vectors have about unit length, x and y centre on " + decimal(v.x, 2) + " and " +
-           decimal(v.y, 2) + ", and R and G correlate by " + decimal(m.correlation, 2);
+    const std::string lengths = has_z ? percent(v.unit) + " of the vectors have about unit length, " : std::string();
+    return lengths + "x and y centre on " + decimal(v.x, 2) + " and " + decimal(v.y, 2) +
+           (has_z ? ", and R and G correlate by " : ", and they correlate by ") + decimal(m.correlation, 2);
 }
 
 }  // namespace tex::inline v1

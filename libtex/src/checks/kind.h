@@ -65,7 +65,7 @@ KindMeasure measure_kind(const Stored& stored, const Background* without);
 // it is asked only if the measures leave a choice.
 Kind kind_of(const KindMeasure& measure, const Stored& stored, bool is_surface);
 
-// The evidence against normals, for a message.
-std::string evidence_text(const KindMeasure& measure);
+// The evidence against normals, for a message. `has_z`: z is stored, so that vectors have lengths.
+std::string evidence_text(const KindMeasure& measure, bool has_z);
 
 }  // namespace tex::inline v1

@@ -27,6 +27,15 @@ void add_share(Findings& findings, std::string_view id, std::string message, dou
     finding.unit = "share";
 }
 
+bool is_constant(const Plane<float>& channel) {
+    const float first = channel.at(0, 0);
+    for (int j = 0; j < channel.extent().height; ++j) {
+        const float* const row = channel.row(j);
+        if (!std::all_of(row, row + channel.extent().width, [first](float v) { return v == first; })) return false;
+    }
+    return true;
+}
+
 // The share of values that are nearly 0 or 1.
 double extreme_share(const Plane<float>& channel) {
     const Extent extent = channel.extent();
@@ -55,23 +64,26 @@ bool check_surface_data(const CheckContext& context, Findings& findings) {
     return true;
 }
 
-void add_grey(Findings& findings, double share) {
-    add_share(findings, "N210", "R, G and B are equal in " + percent(share) + " of the texels", share);
+void add_grey(Findings& findings, double share, const std::string& more = {}) {
+    add_share(findings, "N210", "R, G and B are equal in " + percent(share) + " of the texels" + more, share);
 }
 
-void check_no_map(const CheckContext& context, Findings& findings) {
+PictureKind check_no_map(const CheckContext& context, Findings& findings) {
     const KindMeasure& measure = context.kind_measure;
     const double grey = context.counts.share(Property::grey);
     if (context.stored.has_z() && grey > kGreyEverywhere) {
         add_grey(findings, grey);
-    } else if (!context.stored.has_z() && measure.grey > kGreyEverywhere) {
-        add_share(findings, "N210",
-                  "R, G and B are equal in " + percent(measure.grey) + " of the texels, and A is no x beside them",
-                  measure.grey);
-    } else if (!check_surface_data(context, findings)) {
-        const double unit = measure.as(Reading::as_stored).unit;
-        add_share(findings, "N214", evidence_text(measure), unit);
+        return PictureKind::grey;
     }
+    if (!context.stored.has_z() && measure.grey > kGreyEverywhere) {
+        add_grey(findings, measure.grey,
+                 context.stored.channel(Component::x) == 3 ? ", and A is no x beside them" : "");
+        return PictureKind::grey;
+    }
+    if (check_surface_data(context, findings)) return PictureKind::data;
+    const double unit = measure.as(Reading::as_stored).unit;
+    add_share(findings, "N214", evidence_text(measure, context.stored.has_z()), unit);
+    return PictureKind::colors;
 }
 
 // All texels are the same, and no vector.
@@ -100,11 +112,11 @@ bool holds_z_from_zero(const CheckContext& context) {
 }
 
 // z below 0 in many texels: why.
-void check_behind(const CheckContext& context, Findings& findings) {
+PictureKind check_behind(const CheckContext& context, Findings& findings) {
     const double share = context.counts.share(Property::z_behind);
     const KindMeasure& m = context.kind_measure;
     const bool from_zero = holds_z_from_zero(context);
-    if (share <= kBehindShare && !from_zero) return;
+    if (share <= kBehindShare && !from_zero) return PictureKind::normals;
     const KindMeasure::Vectors& v = m.as(Reading::as_stored);
     constexpr double kCentred = 0.35, kInvertedShare = 0.9, kDown = -0.6, kUprightShare = 0.25, kRare = 0.1;
     if (m.texels > 0 && share > kInvertedShare && v.off_centre() < kCentred && v.z < kDown) {
@@ -118,31 +130,42 @@ void check_behind(const CheckContext& context, Findings& findings) {
     } else if (m.texels == 0 || m.upright < kUprightShare || m.inverted > kRare * m.upright) {
         add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
         // Object-space maps hold unit vectors, although rounded or compressed ones.
-        if (!context.options.any_length && context.counts.share(Property::off_length) > kColorShare)
-            add_counted(context, findings, "N214", Property::off_length, " are off unit length by more than two codes");
+        if (context.options.any_length || context.counts.share(Property::off_length) <= kColorShare)
+            return PictureKind::object_space;
+        add_counted(context, findings, "N214", Property::off_length, " are off unit length by more than two codes");
+        return PictureKind::colors;
     }
+    return PictureKind::normals;
 }
 
 }  // namespace
 
-void check_kind_rules(const CheckContext& context, Findings& findings) {
+PictureKind check_kind_rules(const CheckContext& context, Findings& findings) {
     switch (context.kind) {
         case Kind::no_map: return check_no_map(context, findings);
         case Kind::x_lost:
             findings.add("N222", "R and B are constant, and there is no alpha: G holds y, and nothing holds x");
-            return;
+            return PictureKind::normals;
         case Kind::x_ray: findings.add("N223", "A, B and G are unit vectors as x, y and z"); break;
         case Kind::normals:
         case Kind::two_components: break;
     }
-    if (!context.has_vectors || !context.stored.has_z()) return;
-    // Components and lengths that do not matter leave this to be told: floats of heights.
-    if (const double grey = context.counts.share(Property::grey); grey > kGreyEverywhere && !context.constant)
-        add_grey(findings, grey);
-    if (context.constant)
+    if (!context.has_vectors) {
+        const auto& planes = context.base.planes;
+        return std::all_of(planes.begin(), planes.end(), is_constant) ? PictureKind::constant : PictureKind::grey;
+    }
+    if (context.stored.has_z()) {
+        // Components and lengths that do not matter leave this to be told: floats of heights.
+        const double grey = context.counts.share(Property::grey);
+        if (grey > kGreyEverywhere && !context.constant) {
+            add_grey(findings, grey);
+            check_behind(context, findings);
+            return PictureKind::grey;
+        }
+        if (!context.constant) return check_behind(context, findings);
         check_constant(context, findings);
-    else
-        check_behind(context, findings);
+    }
+    return context.constant ? PictureKind::constant : PictureKind::normals;
 }
 
 }  // namespace tex::inline v1

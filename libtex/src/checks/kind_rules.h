@@ -8,6 +8,6 @@
 
 namespace tex::inline v1 {
 
-void check_kind_rules(const CheckContext& context, Findings& findings);
+PictureKind check_kind_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// check-normals --classify and build-normals --init: what a tree of pictures holds, and a manifest for it.
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "tree/infer_rules.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr const char* kUp = "up";
+constexpr const char* kDown = "down";
+
+std::vector<InferredRule> rules_for(const std::vector<SettingsOfFile>& files) { return infer_rules(files); }
+
+class Init : public testing::Test {
+protected:
+    Init() {
+        for (const char* name : {"strip.png", "bricks.png", "dunes.png", "waves.png"}) scratch_.add_sample(name, name);
+        for (const char* folder : {"art/deep", "art/pbr", "bought"})
+            std::filesystem::create_directories(scratch_.path(folder));
+        make("bake-normals strip.png -o art/wall_n.png --wrap clamp");
+        make("bake-normals waves.png -o art/deep/floor_n.png");
+        make("bake-normals bricks.png -o bought/brick_nrm.tga --y down");
+        make("bake-normals dunes.png -o bought/dune_nrm.tga --y down");
+        make(
+            "pack-normals art/deep/floor_n.png -o art/pbr/wall_l.png --layout labpbr --blue waves.png --alpha "
+            "waves.png");
+        for (const char* name : {"art/wall_h.png", "art/dune_h.png"}) scratch_.add_sample("dunes.png", name);
+    }
+    void make(const std::string& line) {
+        const Ran ran = shell(scratch_, line + " --no-sync --quiet");
+        ASSERT_EQ(ran.code, 0) << line << ": " << ran.err;
+    }
+
+    Scratch scratch_;
+};
+
+}  // namespace
+
+TEST(InferRules, ThePatternIsAsWideAsTheTreeAllows) {
+    const auto wide =
+        rules_for({{"a/x_n.png", kUp, {}, false}, {"b/y_n.tga", kUp, {}, false}, {"b/y.png", "", {}, false}});
+    ASSERT_EQ(wide.size(), 1u);
+    EXPECT_EQ(wide[0].match, (std::vector<std::string>{"**/*_n.{png,tga}"}));
+    const auto split = rules_for({{"a/x_n.png", kUp, {}, false},
+                                  {"a/z_n.png", kUp, {}, false},
+                                  {"b/y_n.png", kDown, {}, false},
+                                  {"b/w_n.png", kDown, {}, false},
+                                  {"b/v_n.png", kDown, {}, false}});
+    ASSERT_EQ(split.size(), 2u);
+    EXPECT_EQ(split[0].match, (std::vector<std::string>{"a/*_n.png"}));
+    EXPECT_EQ(split[1].match, (std::vector<std::string>{"**/*_n.png"})) << "what is left of it";
+    const auto folder = rules_for({{"n/a.png", kUp, {}, false}, {"n/b.png", kUp, {}, false}, {"a.png", "", {}, false}});
+    EXPECT_EQ(folder[0].match, (std::vector<std::string>{"n/*.png"}));
+}
+
+TEST(InferRules, ExceptionsAreNamed) {
+    const auto rules = rules_for({{"x_n.png", kUp, {}, false},
+                                  {"y_n.png", kUp, {}, false},
+                                  {"flat_n.png", "", {kUp, kDown}, false},
+                                  {"bro[k]en_n.png", "", {}, true}});
+    ASSERT_EQ(rules.size(), 1u);
+    EXPECT_EQ(rules[0].exclude, (std::vector<std::string>{"bro\\[k\\]en_n.png"}));
+    EXPECT_EQ(rules[0].files, (std::vector<std::string>{"x_n.png", "y_n.png", "flat_n.png"}));
+    const auto single =
+        rules_for({{"x_n.png", kUp, {}, false}, {"a_n.png", "", {}, false}, {"f.png", "", {kUp}, false}});
+    ASSERT_EQ(single.size(), 1u);
+    EXPECT_EQ(single[0].match, (std::vector<std::string>{"x_n.png", "f.png"}));
+    EXPECT_TRUE(rules_for({{"a_n.png", "", {}, false}}).empty());
+}
+
+TEST(InferRules, TheEndOfANameSaysWhatItHolds) {
+    EXPECT_EQ(name_end("a/rock_n.png"), "_n");
+    EXPECT_EQ(name_end("a.b/rockNormal.tga"), "Normal");
+    EXPECT_EQ(name_end("rock-normal-gl.png"), "-gl");
+    for (const char* none : {"rock.png", "Rock.png", "rock_01.png", "_.png", "a.b/c"})
+        EXPECT_EQ(name_end(none), "") << none;
+    EXPECT_EQ(name_beginning("a/rock_n.png"), "a/rock");
+}
+
+TEST_F(Init, ClassifySaysWhatPicturesHold) {
+    scratch_.add_sample("report.png", "colour.png");
+    const Ran ran =
+        shell(scratch_, "check-normals --classify art/wall_n.png bought/brick_nrm.tga art/wall_h.png colour.png");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("normals       rgb      up    1.00  art/wall_n.png"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("normals       rgb      down  1.00  bought/brick_nrm.tga"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("grey          -        -     1.00  art/wall_h.png"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("colour        -        -"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("4 files: 2 normals (green up in 1, down in 1), 1 grey, 1 colour"), std::string::npos)
+        << ran.out;
+    const Ran json = shell(scratch_, "check-normals --classify --json art/wall_n.png");
+    EXPECT_EQ(nlohmann::json::parse(json.out.substr(0, json.out.find('\n')))["kind"], "normals");
+    scratch_.write("no.png", "no picture");
+    const Ran broken = shell(scratch_, "check-normals --classify no.png art/wall_n.png");
+    EXPECT_EQ(broken.code, 4);
+    EXPECT_NE(broken.out.find("unknown       -        -     -     no.png: "), std::string::npos) << broken.out;
+    EXPECT_EQ(shell(scratch_, "check-normals --classify art/wall_n.png --report r.html").code, 2);
+}
+
+TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
+    scratch_.write("art/broken_n.png", "no picture");
+    const Ran ran = shell(scratch_, "build-normals --init");
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    const std::string manifest = scratch_.read("normals.toml");
+    SCOPED_TRACE(manifest);
+    EXPECT_NE(manifest.find("match = \"**/*_nrm.tga\"\nsteps = [ { mip = { y-in = \"down\" } } ]"), std::string::npos);
+    EXPECT_NE(manifest.find("\"**/*_n.png\""), std::string::npos);
+    EXPECT_NE(manifest.find("y-in = \"up\", swizzle = \"rg\", drop = true"), std::string::npos) << "LabPBR";
+    EXPECT_NE(manifest.find("#     art/wall_h.png\n"), std::string::npos) << "there is a normal map beside it";
+    EXPECT_NE(manifest.find("#     art/broken_n.png\n"), std::string::npos);
+    const Ran built = shell(scratch_, "build-normals --no-sync");
+    EXPECT_EQ(built.code, 0) << built.err;
+    for (const char* name : {"art/wall_n", "art/deep/floor_n", "bought/brick_nrm", "art/pbr/wall_l", "art/dune_h"})
+        EXPECT_TRUE(scratch_.has(std::string("build/textures/") + name + ".dds")) << name;
+    EXPECT_EQ(shell(scratch_, "check-normals --baseline normals-baseline.json bought/*.tga art/wall_n.png").code, 0);
+    // Neither file is replaced.
+    const Ran again = shell(scratch_, "build-normals --init");
+    EXPECT_EQ(again.code, 3);
+    EXPECT_NE(again.err.find("normals.toml: is there already"), std::string::npos) << again.err;
+    EXPECT_EQ(scratch_.read("normals.toml"), manifest);
+    const Ran other = shell(scratch_, "build-normals other.toml --init");
+    EXPECT_EQ(other.code, 3);
+    EXPECT_FALSE(scratch_.has("other.toml"));
+}
+
+TEST_F(Init, AMissingManifestNamesTheOption) {
+    const Ran ran = shell(scratch_, "build-normals");
+    EXPECT_EQ(ran.code, 3);
+    EXPECT_NE(ran.err.find("normals.toml: "), std::string::npos);
+    EXPECT_NE(ran.err.find("build-normals --init writes one"), std::string::npos) << ran.err;
+    EXPECT_EQ(shell(scratch_, "build-normals --init --dry-run").code, 2);
+}
+
+// Blue holds occlusion, and alpha heights: x and y alone are judged.
+TEST_F(Init, ALayoutCanBeGiven) {
+    const Ran given = shell(scratch_, "check-normals --swizzle labpbr --json art/pbr/wall_l.png");
+    EXPECT_EQ(given.code, 0) << given.out;
+    const auto report = nlohmann::json::parse(given.out.substr(0, given.out.find('\n')));
+    EXPECT_EQ(report["swizzle"], "rg");
+    EXPECT_TRUE(std::none_of(report["findings"].begin(), report["findings"].end(), [](const auto& finding) {
+        return finding["severity"] != "note";
+    })) << given.out;
+    scratch_.write("c.toml", "[[rule]]\nmatch = \"**/pbr/*\"\nswizzle = \"labpbr\"\n");
+    const Ran ruled = shell(scratch_, "check-normals --config c.toml --json art/pbr/wall_l.png");
+    EXPECT_EQ(ruled.out, given.out);
+    // Colours are no normals in this layout, either.
+    scratch_.add_sample("report.png", "colour.png");
+    EXPECT_EQ(shell(scratch_, "check-normals --swizzle labpbr colour.png").code, 1);
+    EXPECT_EQ(shell(scratch_, "check-normals --swizzle nonsense colour.png").code, 2);
+    const Ran lacking = shell(scratch_, "check-normals --swizzle dxt5nm bought/brick_nrm.tga");
+    EXPECT_EQ(lacking.code, 2);
+    EXPECT_NE(lacking.err.find("reads A, which is not there"), std::string::npos) << lacking.err;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/kinds.h"
+
+#include <cstddef>
+#include <numeric>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <tex/format.h>
+
+#include "cli/text.h"
+#include "reports/findings.h"
+
+namespace tex::cli {
+namespace {
+
+constexpr std::string_view kNothing = "-";
+
+bool holds_normals(const CheckReport& report) {
+    return report.kind == PictureKind::normals || report.kind == PictureKind::object_space;
+}
+
+}  // namespace
+
+std::string kind_text(const CheckReport& report) {
+    const bool has_normals = holds_normals(report);
+    const std::string layout = has_normals ? layout_name(report.swizzle) : std::string(kNothing);
+    const std::string_view y = has_normals && report.y.y ? name_of(kYAxisNames, *report.y.y) : kNothing;
+    const std::string confidence =
+        report.kind == PictureKind::unknown ? std::string(kNothing) : fmt::format("{:.2f}", report.kind_confidence);
+    const std::string why = report.error ? ": " + report.error->reason : std::string();
+    return fmt::format("{:<12}  {:<7}  {:<4}  {:<4}  {}{}\n", name_of(kPictureKindNames, report.kind), layout, y,
+                       confidence, printable(title_of(report)), printable(why));
+}
+
+void KindTotals::add(const CheckReport& report) {
+    ++of[static_cast<std::size_t>(report.kind)];
+    if (!holds_normals(report) || !report.y.y) return;
+    ++(*report.y.y == YAxis::up ? up : down);
+}
+
+std::string KindTotals::text() const {
+    const int files = std::accumulate(of.begin(), of.end(), 0);
+    std::string text = fmt::format("{} file{}", files, files == 1 ? "" : "s");
+    std::string_view before = ": ";
+    for (const Named<PictureKind>& row : kPictureKindNames) {
+        const int count = of[static_cast<std::size_t>(row.value)];
+        if (count == 0) continue;
+        text += fmt::format("{}{} {}", before, count, row.name);
+        if (row.value == PictureKind::normals) text += fmt::format(" (green up in {}, down in {})", up, down);
+        before = ", ";
+    }
+    return text;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tree/init.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+#include <tex/check.h>
+#include <tex/file.h>
+#include <tex/format.h>
+
+#include "cli/file_status.h"
+#include "cli/glob.h"
+#include "cli/json.h"
+#include "cli/text.h"
+#include "cli/text_file.h"
+#include "reports/baseline.h"
+#include "reports/kinds.h"
+#include "tasks/find_files.h"
+#include "threads/fork_join.h"
+#include "tree/infer_rules.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPictures =
+    "**/*.{png,tif,tiff,exr,tga,bmp,jpg,jpeg,webp,dds,ktx2,hdr,psd,asc,hgt,bil,flt,r16,r32,raw}";
+constexpr const char* kBaselineName = "normals-baseline.json";
+
+// The ends of names of height maps, in lower case, without what separates them. Grey of 8 bits alone shows nothing.
+constexpr std::string_view kHeightWords[] = {"h",    "height", "heights",      "heightmap", "hmap",
+                                             "disp", "dem",    "displacement", "bump",      "elevation"};
+
+// A path below the root as a TOML string.
+std::string quoted(const std::string& text) { return Json(text).dump(); }
+
+std::string list_of(const std::vector<std::string>& patterns) {
+    if (patterns.size() == 1) return quoted(patterns.front());
+    std::string text = "[";
+    for (const std::string& pattern : patterns) text += fmt::format("\n  {},", quoted(pattern));
+    return text + "\n]";
+}
+
+bool is_called_heights(const std::string& path) {
+    std::string end = lower_case(name_end(path));
+    end.erase(0, std::min(end.find_first_not_of("_-. "), end.size()));
+    if (end.empty()) end = lower_case(fs::path(path).stem().string());
+    return std::find(std::begin(kHeightWords), std::end(kHeightWords), end) != std::end(kHeightWords);
+}
+
+bool has_error(const CheckReport& report) {
+    return report.error || std::any_of(report.findings.begin(), report.findings.end(),
+                                       [](const Finding& finding) { return finding.severity == Severity::error; });
+}
+
+// What a rule's only step says about normals, as TOML.
+std::string mip_step(std::optional<YAxis> y, const CheckReport& report, const std::string& layout) {
+    std::vector<std::string> settings;
+    if (y) settings.push_back(fmt::format("y-in = \"{}\"", name_of(kYAxisNames, *y)));
+    if (!layout.empty()) settings.push_back(fmt::format("swizzle = \"{}\"", layout));
+    if (report.more_data) settings.emplace_back("drop = true");
+    if (settings.empty()) return "{ mip = {} }";
+    std::string text;
+    for (const std::string& setting : settings) text += (text.empty() ? "" : ", ") + setting;
+    return fmt::format("{{ mip = {{ {} }} }}", text);
+}
+
+constexpr const char* kBakeStep = "{ bake = { bumpiness = \"auto\" } }";
+
+// Why no rule is for a picture; empty if one is.
+class Tree {
+public:
+    Tree(std::vector<FoundFile> files, std::string root) : files_(std::move(files)), root_(std::move(root)) {
+        reports_.resize(files_.size());
+        why_not_.resize(files_.size());
+    }
+
+    [[nodiscard]] std::string path_of(std::size_t k) const {
+        return root_.empty() ? files_[k].path : root_ + "/" + files_[k].path;
+    }
+
+    void check(const RunOptions& running, Console& console) {
+        std::atomic<std::size_t> next{0}, done{0};
+        const bool shows = running.shows_progress(console.host());
+        const auto work = [&](int) {
+            for (std::size_t k = next++; k < files_.size() && console.host().interruption().empty(); k = next++) {
+                auto report = check_file(path_of(k), {}, running.read, {1, {}});
+                if (report) reports_[k] = std::move(*report);
+                const std::size_t count = ++done;
+                if (shows)
+                    console.draw_progress(static_cast<double>(count) / static_cast<double>(files_.size()),
+                                          fmt::format("{} of {} files", count, files_.size()));
+            }
+        };
+        const int threads = running.threads > 0 ? running.threads : tbb::info::default_concurrency();
+        const int workers = std::min(threads, static_cast<int>(std::min<std::size_t>(files_.size(), 64)));
+        if (workers <= 1)
+            work(0);
+        else
+            fork_join(workers, workers, work);
+        console.clear_progress();
+    }
+
+    // The settings of every file, for infer_rules().
+    [[nodiscard]] std::vector<SettingsOfFile> settings() {
+        std::set<std::string> materials;  // that have a normal map
+        for (std::size_t k = 0; k < files_.size(); ++k) {
+            if (holds_normals(k)) materials.insert(name_beginning(files_[k].path));
+        }
+        std::vector<SettingsOfFile> all;
+        std::set<std::string> outputs;  // names without extension, which outputs get
+        for (std::size_t k = 0; k < files_.size(); ++k) {
+            SettingsOfFile file{files_[k].path, {}, {}, false};
+            settle(k, materials, file);
+            const std::string stem = file.path.substr(0, file.path.rfind('.'));
+            if ((!file.settings.empty() || !file.also.empty()) && !outputs.insert(stem).second) {
+                file.settings.clear();
+                file.also.clear();
+                file.is_left_out = true;
+                why_not_[k] = "another picture of this name has the same output";
+            }
+            all.push_back(std::move(file));
+        }
+        return all;
+    }
+
+    [[nodiscard]] Baseline baseline(const std::string& path) const {
+        Baseline baseline(path);
+        for (std::size_t k = 0; k < files_.size(); ++k) {
+            if (holds_normals(k)) baseline.add(reports_[k], content_of(path_of(k)));
+        }
+        return baseline;
+    }
+
+    [[nodiscard]] int count_findings() const {
+        int count = 0;
+        for (std::size_t k = 0; k < files_.size(); ++k)
+            count += holds_normals(k) ? static_cast<int>(reports_[k].findings.size()) : 0;
+        return count;
+    }
+
+    [[nodiscard]] std::string comments() const {
+        std::map<std::string, std::vector<std::string>> by_reason;
+        for (std::size_t k = 0; k < files_.size(); ++k) {
+            if (!why_not_[k].empty()) by_reason[why_not_[k]].push_back(files_[k].path);
+        }
+        std::string text;
+        for (const auto& [reason, paths] : by_reason) {
+            text += fmt::format("\n# No rule: {}.\n", reason);
+            for (const std::string& path : paths) text += fmt::format("#     {}\n", printable(path));
+        }
+        return text;
+    }
+
+    [[nodiscard]] KindTotals totals() const {
+        KindTotals totals;
+        for (const CheckReport& report : reports_) totals.add(report);
+        return totals;
+    }
+
+    [[nodiscard]] bool holds_normals(std::size_t k) const {
+        const PictureKind kind = reports_[k].kind;
+        return kind == PictureKind::normals || kind == PictureKind::object_space;
+    }
+
+private:
+    void settle(std::size_t k, const std::set<std::string>& materials, SettingsOfFile& file) {
+        const CheckReport& report = reports_[k];
+        const bool is_normals = report.kind == PictureKind::normals;
+        if (report.kind == PictureKind::unknown) {
+            why_not_[k] = "cannot be decoded";
+        } else if (is_normals && has_error(report)) {
+            why_not_[k] = "normals, in which check-normals finds errors";
+        } else if (is_normals && format_info(report.format).has_blocks()) {
+            why_not_[k] = "normals that are compressed already";
+        } else if (is_normals) {
+            const std::string guess = layout_name(report.swizzle);
+            const std::string layout =
+                report.swizzle == kSwizzleXy && format_info(report.format).channels > 2 ? guess : "";
+            if (report.y.y) {
+                file.settings = mip_step(report.y.y, report, layout);
+            } else {
+                for (const YAxis y : {YAxis::up, YAxis::down}) file.also.push_back(mip_step(y, report, layout));
+            }
+            return;
+        } else if (report.kind == PictureKind::object_space) {
+            why_not_[k] = "normals in object space, which convert-normals turns into tangent space with the mesh";
+        } else if (report.kind == PictureKind::heights ||
+                   (report.kind == PictureKind::grey && is_called_heights(file.path))) {
+            if (materials.find(name_beginning(file.path)) == materials.end()) {
+                file.settings = kBakeStep;
+                return;
+            }
+            why_not_[k] = "heights with a normal map beside them";
+        } else {
+            why_not_[k] = std::string(meaning_of(report.kind));
+        }
+        file.is_left_out = is_normals;
+    }
+
+    static std::string_view meaning_of(PictureKind kind) {
+        for (const Named<PictureKind>& row : kPictureKindNames) {
+            if (row.value == kind) return row.meaning;
+        }
+        return {};
+    }
+
+    std::vector<FoundFile> files_;
+    const std::string root_;
+    std::vector<CheckReport> reports_;
+    std::vector<std::string> why_not_;
+};
+
+std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tree) {
+    std::string text =
+        "# Written by build-normals --init, from what the pictures of this tree hold: read it, and change what you "
+        "know\n"
+        "# better. normals.toml(5) explains it; build-normals --dry-run says what it would make.\n"
+        "version = 1\n\n"
+        "[defaults]\n"
+        "out-dir = \"build/textures\"\n"
+        "name = \"{dir}/{stem}.dds\"\n"
+        "# For an engine, such as for = \"godot\", instead: normal-maps-engines(7).\n"
+        "outputs = [ { format = \"bc5\", y = \"up\" } ]\n";
+    for (const InferredRule& rule : rules) {
+        const bool bakes = rule.settings == kBakeStep;
+        text +=
+            fmt::format("\n# {} of {} file{}{}.\n[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
+                        rule.files.size(), rule.files.size() == 1 ? "" : "s",
+                        bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
+                        list_of(rule.match));
+        if (!rule.exclude.empty()) text += fmt::format("exclude = {}\n", list_of(rule.exclude));
+        text += fmt::format("steps = [ {} ]\n", rule.settings);
+    }
+    return text + tree.comments();
+}
+
+Result<void> write_new(const std::string& path, const std::string& text) {
+    WriteOptions write;
+    write.no_clobber = true;
+    return write_document(path, text, write);
+}
+
+ExitCode failed(const Error& error, Console& console) {
+    console.error(error.message());
+    return exit_code(error.code);
+}
+
+}  // namespace
+
+ExitCode init_tree(const std::string& root, const std::string& manifest, const RunOptions& running, Console& console) {
+    const std::string baseline = (fs::path(manifest).parent_path() / kBaselineName).string();
+    for (const std::string& path : {manifest, baseline}) {
+        if (fs::symlink_status(path).type() != fs::file_type::not_found)
+            return failed({ErrorCode::io, path, "is there already; --init writes new files only"}, console);
+    }
+    const Glob pictures(kPictures);
+    FileSearch search;
+    search.globs = {&pictures};
+    search.skip = [](const std::string&) { return false; };
+    search.unreadable = [&](const std::string& folder, const std::string& reason) {
+        console.warning(folder + ": " + reason);
+    };
+    Tree tree(find_files(root, search), root);
+    tree.check(running, console);
+    if (const std::string_view by = console.host().interruption(); !by.empty()) {
+        console.error(fmt::format("interrupted by {}; nothing is written", by));
+        console.host().end_interrupted();
+        return ExitCode::io;
+    }
+    const std::vector<InferredRule> rules = infer_rules(tree.settings());
+    if (auto written = write_new(manifest, manifest_text(rules, tree)); !written)
+        return failed(written.error(), console);
+    if (auto written = write_new(baseline, tree.baseline(baseline).text()); !written)
+        return failed(written.error(), console);
+    std::size_t files = 0;
+    for (const InferredRule& rule : rules) files += rule.files.size();
+    std::string text =
+        fmt::format("{}\n{}: {} rule{} for {} of them; {}: {} finding{} accepted\n", tree.totals().text(),
+                    printable(manifest), rules.size(), rules.size() == 1 ? "" : "s", files, printable(baseline),
+                    tree.count_findings(), tree.count_findings() == 1 ? "" : "s");
+    return console.print(text);
+}
+
+}  // namespace tex::cli
