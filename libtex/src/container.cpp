@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 
-#include "blocks/bptc.h"
 #include "fields/field_check.h"
 #include "fields/file_fields.h"
 #include "files/atomic_file.h"
@@ -16,6 +15,7 @@
 #include "formats/file_types.h"
 #include "formats/reader/reader.h"
 #include "formats/texture_rows.h"
+#include "rows/codecs.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
 
@@ -90,7 +90,7 @@ Result<std::vector<std::byte>> encode_file(const Texture& texture, Container con
         if (const Result<void> usable = check_usable(texture); !usable) return usable.error();
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         const FileType& type = file_type_of(container);
-        if (is_bptc(texture.format)) return check_holds(type, texture.format, {}).error();
+        if (!format_row(texture.format).codec->is_written) return check_holds(type, texture.format, {}).error();
         if (type.layout != nullptr || options.zstd != 0) {
             if (const Result<void> held = check_holds(type, texture.format, options); !held) return held.error();
             TextureHead head = head_of(texture);

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "blocks/block_half.h"
 #include "fields/field_check.h"
 #include "fields/pack_fields.h"
 #include "kernels/encode.h"
+#include "rows/codecs.h"
 #include "rows/other_rows.h"
 #include "rows/pack_rows.h"
 #include "rows/rdo_rows.h"
@@ -88,7 +88,8 @@ Result<void> encode_blocks(PlaneView<const float> x, PlaneView<const float> y, c
     const Extent extent = x.extent;
     if (extent != y.extent || extent.width < 1 || extent.height < 1)
         return bad_option("x, y: must have the same extent, at least 1x1");
-    if (!has_halves(options.encoding)) return bad_option("encoding: must be of blocks with x and y in a half each");
+    if (codec_of(options.encoding).encode_halves == nullptr)
+        return bad_option("encoding: must be of blocks with x and y in a half each");
     if (pitch < level_bytes(encoding_info(options.encoding).format, {extent.width, 1}))
         return bad_option("pitch: too small for a row of blocks");
     for (int j = 0; j < extent.height; j += kBlockEdge, blocks += pitch)

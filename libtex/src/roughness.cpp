@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "blocks/extent.h"
-#include "kernels/encode_astc.h"
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/usable.h"
@@ -89,12 +88,9 @@ Result<RoughnessChain> build_roughness_chain(const NormalMap& base, const Plane<
 }
 
 Result<Texture> pack_roughness(const RoughnessChain& chain, Format format, Effort effort, const Execution& execution) {
-    constexpr Format kFormats[] = {Format::bc4_unorm, Format::eac_r11_unorm, Format::r8_unorm,
-                                   Format::r16_unorm, Format::r16_float,     Format::r32_float};
     return no_throw(execution, [&]() -> Result<Texture> {
         if (chain.levels.empty()) return bad_option("the chain has no level");
-        const bool is_single = std::find(std::begin(kFormats), std::end(kFormats), format) != std::end(kFormats);
-        if (!is_single && !encodes_astc(format)) {
+        if (!is_single_roughness(format)) {
             return Error{
                 ErrorCode::bad_option,
                 {},

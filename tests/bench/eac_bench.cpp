@@ -18,6 +18,7 @@
 
 #include "bench/encode_maps.h"
 #include "kernels/encode.h"
+#include "rows/codecs.h"
 
 namespace {
 

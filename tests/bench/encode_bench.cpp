@@ -39,6 +39,7 @@
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "kernels/encode.h"
+#include "rows/codecs.h"
 
 namespace {
 

@@ -11,10 +11,10 @@
 
 #include <tex/pack.h>
 
-#include "blocks/astc_decode.h"
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "blocks/eac.h"
+#include "rows/codecs.h"
 
 namespace {
 
@@ -64,8 +64,8 @@ Block decode_block(tex::Format format, const std::byte* bytes) {
 
 // Whether there is a decoder beside that of blocks/.
 bool has_kernel(tex::Format format) {
-    return !tex::is_astc(format) && format != tex::Format::bc6h_ufloat && format != tex::Format::bc6h_sfloat &&
-           format != tex::Format::bc7_unorm;
+    const tex::Codec& codec = *tex::format_row(format).codec;
+    return codec.has_grid && codec.is_written;
 }
 
 void compare_blocks(const tex::Texture& texture, const tex::Image& image) {

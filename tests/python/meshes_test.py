@@ -118,7 +118,7 @@ def test_spaces_are_inverse(normals):
     assert space.source == "mikktspace" and not space.has_tangents and space.tangents.shape == (6, 4)
     made = tex.to_object_space(normals, space, decoder="unity-urp")
     assert made["covered"] == 512 * 512 and (made["coverage"] == 3).all() and made["overlaps"] == 0
-    assert np.degrees(tex.compare(normals, made["map"])["mean"]) > 0
+    assert tex.compare(normals, made["map"])["mean"] > 1  # degrees: another space
     back = tex.to_tangent_space(made["map"], space, decoder="unity-urp")
     assert tex.compare(normals, back["map"])["max"] < 0.1
     # A flat map has the normals of the mesh, here the interpolated ones: T', B' and N' of glTF are not normalised.

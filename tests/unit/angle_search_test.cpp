@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include "rows/codecs.h"
 #include "unit/packing.h"
 
 namespace {

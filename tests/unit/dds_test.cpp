@@ -12,6 +12,7 @@
 
 #include "formats/bytes.h"
 #include "formats/dds/dds_format.h"
+#include "rows/codecs.h"
 #include "unit/textures.h"
 
 namespace tex {

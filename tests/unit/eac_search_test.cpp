@@ -16,6 +16,7 @@
 
 #include "kernels/encode.h"
 #include "reference/real_maps.h"
+#include "rows/codecs.h"
 #include "unit/packing.h"
 #include "unit/targets.h"
 #include "unit/textures.h"

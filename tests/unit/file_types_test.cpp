@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/format_codes.h"
 #include "formats/ktx2/ktx2.h"
 #include "formats/png/png.h"
+#include "rows/codecs.h"
 
 namespace tex {
 namespace {
@@ -59,10 +59,10 @@ TEST(Codecs, FilesBeginWithTheMagicOfTheirRow) {
 }
 
 TEST(Marks, NumberOneFormatEach) {
-    for (const auto registry : {&FormatCodes::dxgi, &FormatCodes::vk}) {
+    for (const auto registry : {&FormatRow::dxgi, &FormatRow::vk}) {
         std::set<std::uint32_t> seen;
         for (const auto& row : kFormatNames) {
-            const FormatNumbers& numbers = codes_of(row.value).*registry;
+            const FormatNumbers& numbers = format_row(row.value).*registry;
             for (const std::uint32_t number : {numbers.exact, numbers.srgb, numbers.typeless}) {
                 if (number == 0) continue;
                 EXPECT_TRUE(seen.insert(number).second) << row.name;

@@ -16,6 +16,7 @@
 #include "blocks/bc4.h"
 #include "kernels/encode.h"
 #include "kernels/single_greens.h"
+#include "rows/codecs.h"
 
 namespace {
 

@@ -117,17 +117,14 @@ bool is_clear(std::string_view id, const CheckReport& report, const Requirements
 
 // The same encoding with alpha.
 std::optional<Encoding> with_alpha(Encoding encoding) {
-    switch (encoding) {
-        case Encoding::rgb8:
-        case Encoding::rgba8: return Encoding::rgba8;
-        case Encoding::rgb16:
-        case Encoding::rgba16: return Encoding::rgba16;
-        case Encoding::half:
-        case Encoding::rgba16f: return Encoding::rgba16f;
-        case Encoding::float_:
-        case Encoding::rgba32f: return Encoding::rgba32f;
-        default: return std::nullopt;
+    const auto [format, swizzle] = encoding_info(encoding);
+    const FormatInfo info = format_info(format);
+    for (const Named<Encoding>& row : kEncodingNames) {
+        const EncodingInfo its = encoding_info(row.value);
+        if (can_hold(row.value).alpha && its.swizzle == swizzle && its.format == format_of(info.sample, info.bits, 4))
+            return row.value;
     }
+    return std::nullopt;
 }
 
 // Whether the command can carry along what the other channels hold: alpha, beside x, y and z.

@@ -15,10 +15,6 @@
 
 namespace tex::inline v1 {
 
-[[nodiscard]] constexpr bool is_astc(Format format) {
-    return format >= Format::astc_4x4_unorm && format <= Format::astc_12x12_unorm;
-}
-
 // The texels of a block in rows of its width. The pointers of channels (R, G, B, A) that are not needed are null.
 struct AstcTexels {
     float* channel[4] = {};

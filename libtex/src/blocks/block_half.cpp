@@ -164,21 +164,6 @@ void eac_variants(Variants& to, Copied copied, bool is_signed, HalfLine line) {
 
 }  // namespace
 
-bool has_halves(Encoding encoding) {
-    const auto [format, swizzle] = encoding_info(encoding);
-    return format_info(format).has_blocks() && swizzle != kSwizzleXxxy;
-}
-
-HalfKind half_kind(Encoding encoding, int half) {
-    switch (encoding) {
-        case Encoding::dxt5nm: return half == 0 ? HalfKind::bc4_unorm : HalfKind::green;
-        case Encoding::bc5_snorm: return HalfKind::bc4_snorm;
-        case Encoding::eac_rg11: return HalfKind::eac_unorm;
-        case Encoding::eac_rg11_snorm: return HalfKind::eac_snorm;
-        default: return HalfKind::bc4_unorm;
-    }
-}
-
 void decode_half(HalfKind kind, const std::byte* half, float values[16]) {
     float r[16], b[16], a[16];
     switch (kind) {

@@ -15,19 +15,11 @@
 
 #include <cstddef>
 
-#include <tex/format.h>
-
 namespace tex::inline v1 {
 
 inline constexpr int kHalfBytes = 8;
 
 enum class HalfKind { bc4_unorm, bc4_snorm, green, eac_unorm, eac_snorm };
-
-// Whether x and y have a half each in the blocks of an encoding. In ASTC, they share what a block has.
-bool has_halves(Encoding encoding);
-
-// The kind of half 0 (x) or 1 (y) of an encoding's blocks. Precondition: has_halves(encoding).
-HalfKind half_kind(Encoding encoding, int half);
 
 // Decodes a half into components in [-1, 1], as unpack() does, and in the same order.
 void decode_half(HalfKind kind, const std::byte* half, float values[16]);

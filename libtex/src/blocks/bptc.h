@@ -9,14 +9,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include <tex/format.h>
-
 namespace tex::inline v1 {
-
-// Formats that are read alone.
-constexpr bool is_bptc(Format format) {
-    return format == Format::bc6h_ufloat || format == Format::bc6h_sfloat || format == Format::bc7_unorm;
-}
 
 // The bits of a block, from the lowest one.
 class BptcBits {

@@ -2,10 +2,9 @@
 
 #include <tex/pack.h>
 
-#include "blocks/astc_decode.h"
 #include "blocks/extent.h"
 #include "c/call.h"
-#include "kernels/encode_astc.h"
+#include "rows/codecs.h"
 #include "rows/pack_rows.h"
 #include "rows/whole_vectors.h"
 
@@ -30,19 +29,19 @@ bool reads_z(Encoding encoding) {
     return std::find(swizzle.begin(), swizzle.end(), Component::z) != swizzle.end();
 }
 
-// What encode_some_astc() takes.
-std::size_t astc_scratch(const PackOptions& options, int width) {
+// What encode_whole_blocks() takes.
+std::size_t scratch_of(const WholeBlocks& codec, const PackOptions& options, int width) {
     const Format format = encoding_info(options.encoding).format;
-    const int rows = astc_rows_at_once(format, width);
+    const int rows = codec.rows_at_once(format, width);
     ScratchSize size;
     size.vector<float>(std::int64_t{2} * width * rows * format_info(format).block.height);
-    return size.bytes() + astc_memory(format, options.effort, width, rows);
+    return size.bytes() + codec.memory(format, options.effort, width, rows);
 }
 
-void encode_some_astc(const tex_map& map, const PackOptions& options, int first, int end, std::byte* out,
-                      std::size_t pitch) {
+void encode_whole_blocks(const WholeBlocks& codec, const tex_map& map, const PackOptions& options, int first, int end,
+                         std::byte* out, std::size_t pitch) {
     const Format format = encoding_info(options.encoding).format;
-    const int block = format_info(format).block.height, together = astc_rows_at_once(format, map.width) * block;
+    const int block = format_info(format).block.height, together = codec.rows_at_once(format, map.width) * block;
     const float side = options.y_axis == YAxis::down ? -1.0f : 1.0f;
     const std::size_t row_bytes = level_bytes(format, {map.width, 1});
     for (int top = first; top < end; top += together) {
@@ -59,9 +58,9 @@ void encode_some_astc(const tex_map& map, const PackOptions& options, int first,
         // Rows of blocks may lie apart: they are encoded one by one then.
         const int step = pitch == row_bytes ? count : block;
         for (int j = 0; j < count; j += step) {
-            encode_astc(format, options.effort, xy.data() + 2 * static_cast<std::ptrdiff_t>(map.width) * j,
-                        {map.width, std::min(step, count - j)},
-                        out + static_cast<std::size_t>((top + j) / block) * pitch);
+            codec.encode(format, options.effort, xy.data() + 2 * static_cast<std::ptrdiff_t>(map.width) * j,
+                         {map.width, std::min(step, count - j)},
+                         out + static_cast<std::size_t>((top + j) / block) * pitch);
         }
     }
 }
@@ -90,11 +89,6 @@ void encode_texels(const tex_map& map, const PackOptions& options, int j, std::b
     }
 }
 
-bool is_prepared(const PackOptions& options) {
-    const Format format = encoding_info(options.encoding).format;
-    return !is_astc(format) || is_astc_prepared(format, options.effort);
-}
-
 }  // namespace
 }  // namespace tex::inline v1
 
@@ -103,10 +97,10 @@ using namespace tex;
 int32_t tex_encode_prepare(const tex_encode_options* options) {
     PackOptions o;
     if (const int32_t error = encode_options(options, o); error != TEX_OK) return error;
-    const Format format = encoding_info(o.encoding).format;
-    if (!is_astc(format)) return TEX_OK;
+    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    if (codec == nullptr) return TEX_OK;
     try {
-        prepare_astc(format, o.effort);
+        codec->prepare(encoding_info(o.encoding).format, o.effort);
     } catch (const std::bad_alloc&) {
         return TEX_OUT_OF_MEMORY;
     }
@@ -116,7 +110,8 @@ int32_t tex_encode_prepare(const tex_encode_options* options) {
 size_t tex_encode_size(int32_t width, const tex_encode_options* options) {
     PackOptions o;
     if (!is_extent(width, 1) || encode_options(options, o) != TEX_OK) return 0;
-    return is_astc(encoding_info(o.encoding).format) ? astc_scratch(o, width) : 0;
+    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    return codec != nullptr ? scratch_of(*codec, o, width) : 0;
 }
 
 int32_t tex_encode(const tex_map* map, const tex_encode_options* options, int32_t first, int32_t end, void* bytes,
@@ -128,11 +123,12 @@ int32_t tex_encode(const tex_map* map, const tex_encode_options* options, int32_
     if (!is_map(map, reads_z(o.encoding)) || bytes == nullptr || !are_blocks(first, end, map->height, block) ||
         pitch < level_bytes(format, {map->width, 1}))
         return TEX_BAD_ARGUMENT;
-    if (!is_prepared(o)) return TEX_NOT_PREPARED;
+    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    if (codec != nullptr && !codec->is_prepared(format, o.effort)) return TEX_NOT_PREPARED;
     auto* const out = static_cast<std::byte*>(bytes);
-    if (is_astc(format)) {
-        return with_scratch(scratch, scratch_size, astc_scratch(o, map->width), [&] {
-            encode_some_astc(*map, o, first, end, out, pitch);
+    if (codec != nullptr) {
+        return with_scratch(scratch, scratch_size, scratch_of(*codec, o, map->width), [&] {
+            encode_whole_blocks(*codec, *map, o, first, end, out, pitch);
             return TEX_OK;
         });
     }

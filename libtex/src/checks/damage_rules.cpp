@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "blocks/astc_decode.h"
 #include "checks/centre.h"
 #include "checks/grid.h"
 #include "checks/jpeg.h"
@@ -19,6 +18,7 @@
 #include "checks/scaled.h"
 #include "checks/seam.h"
 #include "checks/thresholds.h"
+#include "rows/codecs.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {
@@ -77,9 +77,8 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
     std::vector<std::function<void()>> measures;
     if (context.sampled_ok) {
         measures.emplace_back([&] {
-            if (is_astc(context.texture.format)) return;  // its blocks have other sides, and smooth borders
-            if (const FormatInfo info = format_info(context.texture.format); info.has_blocks()) {
-                traces.grid_ratio = grid_ratio(stored, info.block.width);
+            if (const FormatRow& row = format_row(context.texture.format); row.info.has_blocks()) {
+                if (row.codec->has_grid) traces.grid_ratio = grid_ratio(stored, row.info.block.width);
                 return;
             }
             traces.enlargement = find_enlargement(stored);

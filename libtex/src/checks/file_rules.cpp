@@ -8,8 +8,8 @@
 
 #include <tex/format.h>
 
-#include "blocks/astc_decode.h"
 #include "formats/row_source.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -72,8 +72,9 @@ void check_extent(const Texture& texture, const Requirements& require, Findings&
     const Extent extent = texture.extent();
     const std::string text = extent_text(extent);
     if (!is_power_of_two(extent.width) || !is_power_of_two(extent.height)) findings.add("N105", text);
-    const Extent block = is_astc(texture.format) ? Extent{1, 1} : format_info(texture.format).block;
-    if (extent.width % block.width != 0 || extent.height % block.height != 0) findings.add("N106", text);
+    const FormatRow& row = format_row(texture.format);
+    if (row.codec->has_grid && (extent.width % row.info.block.width != 0 || extent.height % row.info.block.height != 0))
+        findings.add("N106", text);
     if (extent.width > require.max_extent || extent.height > require.max_extent) {
         findings.add("N107", text + "; the limit is " + std::to_string(require.max_extent));
     }
@@ -115,7 +116,7 @@ void check_engine(const CheckContext& context, const EngineNeeds& needs, Finding
 }
 
 void check_astc_layout(const CheckContext& context, Findings& findings) {
-    if (!is_astc(context.texture.format) || !context.has_vectors) return;
+    if (format_row(context.texture.format).codec->swizzle != kSwizzleXxxy || !context.has_vectors) return;
     if (same_layout(kSwizzleXxxy, context.stored.swizzle, 4)) return;
     findings.add("N115",
                  "the layout is " + layout_name(context.stored.swizzle) + " instead of " + layout_name(kSwizzleXxxy));

@@ -25,13 +25,6 @@ inline std::uint64_t load_u64(const std::byte* p) {
     return load_u32(p) | static_cast<std::uint64_t>(load_u32(p + 4)) << 32;
 }
 
-// The four bytes of a FourCC as DDS stores it: fourcc("DXT5").
-constexpr std::uint32_t fourcc(const char (&text)[5]) {
-    std::uint32_t code = 0;
-    for (int k = 3; k >= 0; --k) code = code << 8 | static_cast<unsigned char>(text[k]);
-    return code;
-}
-
 // Builds the header of a file.
 class ByteWriter {
 public:

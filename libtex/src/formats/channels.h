@@ -8,7 +8,7 @@
 
 #include <tex/format.h>
 
-#include "blocks/astc_decode.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 
@@ -27,8 +27,7 @@ inline std::vector<std::string> channel_names(const Texture& head) {
 // The likeliest swizzle of normals in this format, for files that do not state one. BC3 is taken for DXT5nm,
 // ASTC for astcenc's form of normals.
 inline Swizzle likely_swizzle(Format format) {
-    if (format == Format::bc3_unorm) return kSwizzleDxt5nm;
-    if (is_astc(format)) return kSwizzleXxxy;
+    if (const auto& usual = format_row(format).codec->swizzle) return *usual;
     switch (format_info(format).channels) {
         case 1: return {Component::other, Component::zero, Component::zero, Component::one};
         case 2: return kSwizzleXy;

@@ -7,8 +7,6 @@
 #include <iterator>
 #include <string>
 
-#include "blocks/astc_decode.h"
-#include "blocks/bptc.h"
 #include "formats/asc/asc.h"
 #include "formats/astc/astc_file.h"
 #include "formats/bil/bil.h"
@@ -16,7 +14,6 @@
 #include "formats/dds/dds.h"
 #include "formats/exr/exr.h"
 #include "formats/exr/exr_rows.h"
-#include "formats/format_codes.h"
 #include "formats/hgt/hgt.h"
 #include "formats/ktx/ktx.h"
 #include "formats/ktx2/compress_ktx2.h"
@@ -27,17 +24,18 @@
 #include "formats/raw/raw.h"
 #include "formats/reader/reader_rows.h"
 #include "formats/tga/tga.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
 
-bool is_written(Format format) { return !is_bptc(format); }
+bool is_written(Format format) { return format_row(format).codec->is_written; }
 
 // DDS has no number for EAC.
 bool is_written_in_dds(Format format) {
     if (!is_written(format)) return false;
-    const FormatCodes& marks = codes_of(widened(format));
-    return marks.legacy.flags != 0 || marks.dxgi.exact != 0;
+    const FormatRow& row = format_row(widened(format));
+    return row.d3d9 != 0 || row.dxgi.exact != 0;
 }
 
 bool is_float(Format format) {
@@ -83,7 +81,7 @@ constexpr FileType kFileTypes[] = {
     {.magic = kKtxMagic, .parse = parse_ktx, .has_layers = true},
     {.container = Container::astc,
      .magic = kAstcMagic,
-     .holds = is_astc,
+     .holds = holds_astc,
      .default_encoding = Encoding::astc_4x4,
      .parse = parse_astc,
      .layout = astc_layout},

@@ -111,11 +111,7 @@ void LevelRows::store(const std::byte* rows, int first, int end, Image& image) c
         for (std::size_t c = 0; c < image.planes.size(); ++c) {
             if (wanted_[c]) out.channel[c] = image.planes[c].row(j);
         }
-        if (info_.has_blocks()) {
-            decode_row_of_blocks(format, rows, width, out, image.planes.front().stride());
-        } else {
-            decode_texels(format, rows, width, out);
-        }
+        decode_row(format, rows, width, out, image.planes.front().stride());
     }
 }
 

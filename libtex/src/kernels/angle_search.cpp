@@ -19,11 +19,9 @@
 namespace tex::inline v1 {
 namespace {
 
-enum class Coding { bc4_unorm, bc4_snorm, green };
-
 // One channel of a block: its endpoints in the order in which they are stored. Endpoints of snorm are 0 to 254.
 struct Ends {
-    Coding coding;
+    HalfKind kind;
     int e[2];
 };
 
@@ -32,14 +30,14 @@ struct Palette {
     float values[8];  // components, in the order of indices
 };
 
-int most_code(Coding coding) { return coding == Coding::green ? 63 : coding == Coding::bc4_unorm ? 255 : 254; }
+int most_code(HalfKind kind) { return kind == HalfKind::green ? 63 : kind == HalfKind::bc4_unorm ? 255 : 254; }
 
-int steps_of(const Ends& ends) { return ends.coding == Coding::green ? 3 : ends.e[0] > ends.e[1] ? 7 : 5; }
+int steps_of(const Ends& ends) { return ends.kind == HalfKind::green ? 3 : ends.e[0] > ends.e[1] ? 7 : 5; }
 
 Palette palette_of(const Ends& ends) {
     const int steps = steps_of(ends);
-    const bool green = ends.coding == Coding::green;
-    const int top = ends.coding == Coding::bc4_snorm ? 254 : 255;
+    const bool green = ends.kind == HalfKind::green;
+    const int top = ends.kind == HalfKind::bc4_snorm ? 254 : 255;
     const int e0 = green ? widen_green(ends.e[0]) : ends.e[0];
     const int e1 = green ? widen_green(ends.e[1]) : ends.e[1];
     const auto component = [&](int k) {  // (steps - k) e0 + k e1, of `steps`
@@ -63,26 +61,26 @@ void store_bytes(std::uint64_t value, int count, std::byte* to) {
     for (int k = 0; k < count; ++k) to[k] = static_cast<std::byte>(value >> (8 * k));
 }
 
-Ends load_ends(Coding coding, const std::byte* block) {
-    if (coding == Coding::green) {
+Ends load_ends(HalfKind kind, const std::byte* block) {
+    if (kind == HalfKind::green) {
         const auto colors = static_cast<int>(load_bytes(block, 4) & 0x7FFFFFFF);
-        return {coding, {colors >> 5 & 63, colors >> 21 & 63}};
+        return {kind, {colors >> 5 & 63, colors >> 21 & 63}};
     }
     const int e0 = std::to_integer<int>(block[0]);
     const int e1 = std::to_integer<int>(block[1]);
-    if (coding == Coding::bc4_unorm) return {coding, {e0, e1}};
-    return {coding, {static_cast<std::int8_t>(e0) + 127, static_cast<std::int8_t>(e1) + 127}};
+    if (kind == HalfKind::bc4_unorm) return {kind, {e0, e1}};
+    return {kind, {static_cast<std::int8_t>(e0) + 127, static_cast<std::int8_t>(e1) + 127}};
 }
 
 void store_channel(const Ends& ends, const int* indices, std::byte* block) {
-    const int bits = ends.coding == Coding::green ? 2 : 3;
+    const int bits = ends.kind == HalfKind::green ? 2 : 3;
     std::uint64_t packed = 0;
     for (int k = 0; k < 16; ++k) packed |= static_cast<std::uint64_t>(indices[k]) << (bits * k);
-    if (ends.coding == Coding::green) {
+    if (ends.kind == HalfKind::green) {
         const auto word = [](int green) { return static_cast<std::uint64_t>(31 << 11 | green << 5 | 31); };
         store_bytes(word(ends.e[0]) | word(ends.e[1]) << 16 | packed << 32, 8, block);
     } else {
-        const int bias = ends.coding == Coding::bc4_snorm ? 127 : 0;
+        const int bias = ends.kind == HalfKind::bc4_snorm ? 127 : 0;
         const auto byte = [&](int code) { return static_cast<std::uint64_t>(static_cast<std::uint8_t>(code - bias)); };
         store_bytes(byte(ends.e[0]) | byte(ends.e[1]) << 8 | packed << 16, 8, block);
     }
@@ -90,9 +88,9 @@ void store_channel(const Ends& ends, const int* indices, std::byte* block) {
 
 // Whether the channel may have these endpoints; the type of palette must not change.
 bool allowed(const Ends& before, const Ends& after) {
-    const int most = most_code(after.coding);
+    const int most = most_code(after.kind);
     if (std::min(after.e[0], after.e[1]) < 0 || std::max(after.e[0], after.e[1]) > most) return false;
-    return after.coding == Coding::green ? after.e[0] >= after.e[1] : steps_of(before) == steps_of(after);
+    return after.kind == HalfKind::green ? after.e[0] >= after.e[1] : steps_of(before) == steps_of(after);
 }
 
 }  // namespace
@@ -197,9 +195,7 @@ bool take_step(const Normals& n, int reach, Ends (&ends)[2], float& sum) {
     return gained;
 }
 
-void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks) {
-    const Coding x_coding = encoding == Encoding::bc5_snorm ? Coding::bc4_snorm : Coding::bc4_unorm;
-    const Coding y_coding = encoding == Encoding::dxt5nm ? Coding::green : x_coding;
+void improve_angles(const BlockRow& row, const HalfKind kinds[2], int reach, std::byte* blocks) {
     for (int block = 0; block < blocks_across(row.width); ++block) {
         Normals n;
         for (int k = 0; k < 16; ++k) {
@@ -216,7 +212,7 @@ void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte
             n.weight[k] = inside ? 1.0f : 0.0f;
         }
         std::byte* bytes = blocks + 16 * static_cast<std::ptrdiff_t>(block);
-        Ends ends[2] = {load_ends(x_coding, bytes), load_ends(y_coding, bytes + 8)};
+        Ends ends[2] = {load_ends(kinds[0], bytes), load_ends(kinds[1], bytes + 8)};
         float sum = measure(n, ends[0], ends[1], nullptr);
         while (take_step(n, reach, ends, sum)) {
         }
@@ -240,8 +236,8 @@ namespace tex::inline v1 {
 
 HWY_EXPORT(improve_angles);
 
-void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(improve_angles)(row, encoding, reach, blocks);
+void improve_angles(const BlockRow& row, const HalfKind kinds[2], int reach, std::byte* blocks) {
+    HWY_DYNAMIC_DISPATCH(improve_angles)(row, kinds, reach, blocks);
 }
 
 }  // namespace tex::inline v1

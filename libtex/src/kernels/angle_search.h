@@ -16,15 +16,14 @@
 
 #include <cstddef>
 
-#include <tex/format.h>
-
+#include "blocks/block_half.h"
 #include "kernels/encode.h"
 
 namespace tex::inline v1 {
 
 // Improves the blocks of a row that were written by encode_dxt5nm() or a similar function. Steps change endpoints by up
-// to `reach` codes, at most kAngleReach.
+// to `reach` codes, at most kAngleReach. `kinds`: of the halves, BC4 or green.
 inline constexpr int kAngleReach = 3;
-void improve_angles(const BlockRow& row, Encoding encoding, int reach, std::byte* blocks);
+void improve_angles(const BlockRow& row, const HalfKind kinds[2], int reach, std::byte* blocks);
 
 }  // namespace tex::inline v1

@@ -13,6 +13,7 @@
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
 #include "blocks/eac.h"
+#include "blocks/extent.h"
 #include "kernels/samples.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -179,12 +180,22 @@ HWY_INLINE void DecodeBc2Alpha(const std::byte* block, float* out, std::ptrdiff_
     for (int k = 0; k < 4; ++k) std::memcpy(out + k * stride, a + 4 * k, 4 * sizeof(float));
 }
 
+template <auto kDecode>
+HWY_INLINE void DecodeHalves(const std::byte* blocks, std::ptrdiff_t step, std::ptrdiff_t end, float* r, float* g,
+                             std::ptrdiff_t stride) {
+    for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
+        if (r != nullptr) kDecode(blocks, r + at, stride);
+        if (g != nullptr) kDecode(blocks + 8, g + at, stride);
+    }
+}
+
 void DecodeBlocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride) {
     float* const r = rows.channel[0];
     float* const g = rows.channel[1];
     float* const a = rows.channel[3];
     const bool color = r != nullptr || g != nullptr || rows.channel[2] != nullptr;
     const std::ptrdiff_t end = std::ptrdiff_t{4} * count;
+    const auto step = static_cast<std::ptrdiff_t>(format_info(format).block_bytes);
     switch (format) {
         case Format::bc1_unorm:
             for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += 8)
@@ -203,40 +214,12 @@ void DecodeBlocks(Format format, const std::byte* blocks, int count, const Chann
             }
             break;
         case Format::bc4_unorm:
-        case Format::bc5_unorm: {
-            const std::ptrdiff_t step = format == Format::bc4_unorm ? 8 : 16;
-            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
-                if (r != nullptr) DecodeBc4<false>(blocks, r + at, stride);
-                if (g != nullptr) DecodeBc4<false>(blocks + 8, g + at, stride);
-            }
-            break;
-        }
+        case Format::bc5_unorm: return DecodeHalves<DecodeBc4<false>>(blocks, step, end, r, g, stride);
         case Format::bc4_snorm:
-        case Format::bc5_snorm: {
-            const std::ptrdiff_t step = format == Format::bc4_snorm ? 8 : 16;
-            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
-                if (r != nullptr) DecodeBc4<true>(blocks, r + at, stride);
-                if (g != nullptr) DecodeBc4<true>(blocks + 8, g + at, stride);
-            }
-            break;
-        }
+        case Format::bc5_snorm: return DecodeHalves<DecodeBc4<true>>(blocks, step, end, r, g, stride);
         case Format::eac_r11_unorm:
-        case Format::eac_rg11_unorm: {
-            const std::ptrdiff_t step = format == Format::eac_r11_unorm ? 8 : 16;
-            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
-                if (r != nullptr) DecodeEac<false>(blocks, r + at, stride);
-                if (g != nullptr) DecodeEac<false>(blocks + 8, g + at, stride);
-            }
-            break;
-        }
-        default: {
-            const std::ptrdiff_t step = format == Format::eac_r11_snorm ? 8 : 16;
-            for (std::ptrdiff_t at = 0; at < end; at += 4, blocks += step) {
-                if (r != nullptr) DecodeEac<true>(blocks, r + at, stride);
-                if (g != nullptr) DecodeEac<true>(blocks + 8, g + at, stride);
-            }
-            break;
-        }
+        case Format::eac_rg11_unorm: return DecodeHalves<DecodeEac<false>>(blocks, step, end, r, g, stride);
+        default: return DecodeHalves<DecodeEac<true>>(blocks, step, end, r, g, stride);
     }
 }
 
@@ -303,8 +286,8 @@ void decode_texels(Format format, const std::byte* texels, int count, const Chan
     }
 }
 
-void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride) {
-    HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, count, rows, stride);
+void decode_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows, std::ptrdiff_t stride) {
+    HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, blocks_across(width), rows, stride);
 }
 
 }  // namespace tex::inline v1

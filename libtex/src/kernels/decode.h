@@ -17,8 +17,8 @@ struct ChannelRows {
 // Decodes `count` texels of a format without blocks. For the values, see decode() in pack.h.
 void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows);
 
-// Decodes `count` blocks that lie side by side: four rows of 4 * count texels, with row k of a channel at
-// channel + k * stride. The values are those of blocks/bc1.h, bc4.h and eac.h, to the last bit.
-void decode_blocks(Format format, const std::byte* blocks, int count, const ChannelRows& rows, std::ptrdiff_t stride);
+// Decodes the blocks of 4x4 texels that cover `width` texels, with row k of a channel at channel + k * stride. The
+// values are those of blocks/bc1.h, bc4.h and eac.h, to the last bit.
+void decode_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows, std::ptrdiff_t stride);
 
 }  // namespace tex::inline v1

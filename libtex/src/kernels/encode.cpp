@@ -3,14 +3,12 @@
 #include "kernels/encode.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 #include "blocks/bc1.h"
 #include "blocks/bc4.h"
-#include "kernels/angle_search.h"
 #include "kernels/bc4_search.h"
 #include "kernels/clusters.h"
 #include "kernels/fit.h"
@@ -168,19 +166,6 @@ void encode_bc5_unorm(const BlockRow& row, Effort effort, std::byte* blocks) {
 
 void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks) {
     for_each_run(row, blocks, [&](const BlockRow& run, std::byte* to) { encode_bc5(run, kBc4Snorm, effort, to); });
-}
-
-void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks) {
-    switch (options.encoding) {
-        case Encoding::dxt5nm: encode_dxt5nm(row, options.effort, blocks); break;
-        case Encoding::bc5: encode_bc5_unorm(row, options.effort, blocks); break;
-        case Encoding::bc5_snorm: encode_bc5_snorm(row, options.effort, blocks); break;
-        case Encoding::eac_rg11: return encode_eac_unorm(row, options.effort, blocks);
-        case Encoding::eac_rg11_snorm: return encode_eac_snorm(row, options.effort, blocks);
-        default: assert(false && "not an encoding in blocks"); return;
-    }
-    if (options.effort == Effort::best && options.metric == Metric::angle)
-        improve_angles(row, options.encoding, kAngleReach, blocks);
 }
 
 }  // namespace tex::inline v1

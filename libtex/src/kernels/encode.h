@@ -49,7 +49,4 @@ void encode_bc5_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_eac_unorm(const BlockRow& row, Effort effort, std::byte* blocks);
 void encode_eac_snorm(const BlockRow& row, Effort effort, std::byte* blocks);
 
-// Uses all options that concern blocks: encoding (one in blocks), effort and, except in EAC, metric.
-void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
-
 }  // namespace tex::inline v1

@@ -94,8 +94,6 @@ void encode_planes(Format format, Effort effort, int channels, Extent extent, st
 
 }  // namespace
 
-bool encodes_astc(Format format) { return format >= Format::astc_4x4_unorm && format <= Format::astc_8x8_unorm; }
-
 void prepare_astc(Format format, Effort effort) { guide_of(format, effort, 2); }
 
 bool is_astc_prepared(Format format, Effort effort) {

@@ -13,12 +13,9 @@
 
 namespace tex::inline v1 {
 
-// Whether encode_astc() writes it: sizes up to 8x8.
-[[nodiscard]] bool encodes_astc(Format format);
-
-// Encodes rows of blocks. `xy` holds the texels: x and y of a normal for each, clamped to [-1, 1], `extent.height` rows
-// of `extent.width` texels. Blocks that are partly outside repeat the last texels. A block depends on its texels alone.
-// Throws std::bad_alloc.
+// Encodes rows of blocks, up to 8x8 texels each. `xy` holds the texels: x and y of a normal for each, clamped to [-1,
+// 1], `extent.height` rows of `extent.width` texels. Blocks that are partly outside repeat the last texels. A block
+// depends on its texels alone. Throws std::bad_alloc.
 //
 // Without lent memory, which takes astc_memory() for at most `rows` rows of blocks at once, it comes from the heap. The
 // first call for a format and an effort, or prepare_astc(), makes tables, which stay on the heap.

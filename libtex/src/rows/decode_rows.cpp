@@ -10,22 +10,21 @@
 #include "blocks/astc_decode.h"
 #include "blocks/bc6h.h"
 #include "blocks/bc7.h"
-#include "blocks/bptc.h"
 #include "blocks/extent.h"
 #include "kernels/samples.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
-namespace {
 
 // Texels of BC6H and BC7 are decoded to codes, which become floats as those of formats without blocks.
-void decode_row_of_bptc(Format format, const std::byte* blocks, int count, const ChannelRows& rows,
+void decode_row_of_bptc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                         std::ptrdiff_t stride) {
     constexpr int kTexels = kBlockEdge * kBlockEdge;
     const FormatInfo info = format_info(format);
     const auto sample_bytes = static_cast<std::size_t>(info.bits / 8);
     const std::size_t texel_bytes = sample_bytes * static_cast<std::size_t>(info.channels);
     std::byte texels[kTexels * 8];
-    for (std::ptrdiff_t at = 0; at < std::ptrdiff_t{kBlockEdge} * count; at += kBlockEdge, blocks += info.block_bytes) {
+    for (std::ptrdiff_t at = 0; at < width; at += kBlockEdge, blocks += info.block_bytes) {
         if (format == Format::bc7_unorm) {
             std::uint8_t rgba[kTexels][4];
             decode_bc7(blocks, rgba);
@@ -45,8 +44,9 @@ void decode_row_of_bptc(Format format, const std::byte* blocks, int count, const
     }
 }
 
-void decode_row_of_astc(Extent block, const std::byte* blocks, int width, const ChannelRows& rows,
+void decode_row_of_astc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                         std::ptrdiff_t stride) {
+    const Extent block = format_info(format).block;
     float values[4][kAstcMostTexels];
     AstcTexels texels;
     for (int c = 0; c < 4; ++c) texels.channel[c] = rows.channel[c] == nullptr ? nullptr : values[c];
@@ -61,13 +61,8 @@ void decode_row_of_astc(Extent block, const std::byte* blocks, int width, const 
     }
 }
 
-}  // namespace
-
-void decode_row_of_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
-                          std::ptrdiff_t stride) {
-    if (is_bptc(format)) return decode_row_of_bptc(format, blocks, blocks_across(width), rows, stride);
-    if (!is_astc(format)) return decode_blocks(format, blocks, blocks_across(width), rows, stride);
-    decode_row_of_astc(format_info(format).block, blocks, width, rows, stride);
+void decode_row(Format format, const std::byte* from, int width, const ChannelRows& rows, std::ptrdiff_t stride) {
+    format_row(format).codec->decode(format, from, width, rows, stride);
 }
 
 int strip_rows_of(Format format) {
@@ -81,7 +76,7 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
     const int width = level.extent.width;
     const std::size_t pitch = level_bytes(format, {width, 1});  // of a row of blocks, for block formats
     if (format_info(format).has_blocks()) {
-        decode_row_of_blocks(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, width, rows, stride);
+        decode_row(format, level.bytes.data() + static_cast<std::size_t>(strip) * pitch, width, rows, stride);
         return;
     }
     const int first = strip * kBlockEdge;
@@ -92,7 +87,7 @@ void decode_strip(Format format, const Level& level, int strip, const ChannelRow
             float* const channel = rows.channel[c];
             row.channel[c] = channel == nullptr ? nullptr : channel + (j - first) * stride;
         }
-        decode_texels(format, level.bytes.data() + static_cast<std::size_t>(j) * pitch, width, row);
+        decode_row(format, level.bytes.data() + static_cast<std::size_t>(j) * pitch, width, row, stride);
     }
 }
 

@@ -11,10 +11,15 @@
 
 namespace tex::inline v1 {
 
-// Decodes the blocks that cover `width` texels: as many rows as a block has. Row k of a channel is at channel + k *
-// stride, and needs room for whole blocks of 4x4 texels (a row of a Plane has it). Throws std::bad_alloc.
-void decode_row_of_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
-                          std::ptrdiff_t stride);
+// Decodes `width` texels: a row, or the blocks that cover them, as many rows as a block has. Row k of a channel is at
+// channel + k * stride, and needs room for whole blocks of 4x4 texels (a row of a Plane has it).
+void decode_row(Format format, const std::byte* from, int width, const ChannelRows& rows, std::ptrdiff_t stride);
+
+// For formats of these codecs. For all other blocks, see kernels/decode.h.
+void decode_row_of_bptc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
+                        std::ptrdiff_t stride);
+void decode_row_of_astc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
+                        std::ptrdiff_t stride);
 
 // A level is decoded strip by strip: a row of blocks, or four rows of texels in formats without blocks.
 [[nodiscard]] int strip_rows_of(Format format);

@@ -10,10 +10,9 @@
 
 #include <half.h>
 
-#include "blocks/astc_decode.h"
 #include "kernels/encode.h"
-#include "kernels/encode_astc.h"
 #include "kernels/pack.h"
+#include "rows/codecs.h"
 #include "rows/other_rows.h"
 
 namespace tex::inline v1 {
@@ -82,9 +81,10 @@ void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, in
     }
 }
 
-// Packs rows of blocks, `count` rows of texels from row j. For the other arguments, see pack_rows().
-void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, std::byte* out, const RdoBands& bands,
-               RdoTally* tally, std::byte* plain) {
+// Packs rows of blocks in which x and y share what there is, `count` rows of texels from row j. For the other
+// arguments, see pack_rows().
+void pack_whole_blocks(const WholeBlocks& codec, const Rows& rows, const PackOptions& options, int j, int count,
+                       std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
     const int width = rows.extent().width;
     std::vector<float> xy(2 * size(width) * size(count));
@@ -99,13 +99,13 @@ void pack_astc(const Rows& rows, const PackOptions& options, int j, int count, s
             *to++ = y.negate ? -y.values[i] : y.values[i];
         }
     }
-    encode_astc(format, options.effort, xy.data(), {width, count}, out);
+    codec.encode(format, options.effort, xy.data(), {width, count}, out);
     if (!is_optimised(options)) return;
     if (plain != nullptr) std::memcpy(plain, out, level_bytes(format, {width, count}));
     for (int k = 0; k < count; k += bands.rows) {
         const float* const band = xy.data() + 2 * size(width) * size(k);
-        optimise_astc_band(band, std::min(bands.rows, count - k), bands.level, bands.first + j + k, options,
-                           out + level_bytes(format, {width, k}), tally);
+        codec.optimise(band, std::min(bands.rows, count - k), bands.level, bands.first + j + k, options,
+                       out + level_bytes(format, {width, k}), tally);
     }
 }
 
@@ -154,10 +154,10 @@ void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackO
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;
-        if (is_astc(format)) {
+        if (const WholeBlocks* const codec = codec_of(options.encoding).whole; codec != nullptr) {
             const std::size_t offset = size(begin / block) * pitch;
-            return pack_astc(rows, options, begin, end - begin, out + offset, bands, tally,
-                             plain == nullptr ? nullptr : plain + offset);
+            return pack_whole_blocks(*codec, rows, options, begin, end - begin, out + offset, bands, tally,
+                                     plain == nullptr ? nullptr : plain + offset);
         }
         for (int j = begin; j < end; j += block) encode_blocks(rows.blocks(j), options, out + size(j / block) * pitch);
         if (!is_optimised(options)) return;

@@ -11,6 +11,7 @@
 #include "blocks/extent.h"
 #include "kernels/angle_search.h"
 #include "kernels/chords.h"
+#include "rows/codecs.h"
 #include "rows/math.h"
 #include "rows/rdo_parts.h"
 
@@ -32,8 +33,8 @@ void chords_of(const RdoBand& band, std::size_t index, const std::byte* bytes, f
     const RdoBlock& block = band.blocks[index];
     const float* const normals[3] = {block.x, block.y, block.z};
     float x[16], y[16];
-    decode_half(half_kind(band.encoding, 0), bytes, x);
-    decode_half(half_kind(band.encoding, 1), bytes + kHalfBytes, y);
+    decode_half(band.kinds[0], bytes, x);
+    decode_half(band.kinds[1], bytes + kHalfBytes, y);
     block_chords(normals, x, y, chords);
 }
 
@@ -123,7 +124,7 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Exten
                   const PackOptions& options, const std::byte* blocks) {
     constexpr int kReach = 2;  // farther steps gain little
     RdoBand band;
-    band.encoding = options.encoding;
+    band.kinds = codec_of(options.encoding).halves;
     band.window = options.rdo.window;
     for (int r = 0; r < count; ++r) {
         const BlockRow row = rows(r);
@@ -132,8 +133,7 @@ RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Exten
         const std::ptrdiff_t pitch = kBandBlockBytes * across;
         band.plain.insert(band.plain.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
         band.improved.insert(band.improved.end(), blocks + r * pitch, blocks + (r + 1) * pitch);
-        const bool is_eac = keeps_slope(half_kind(band.encoding, 0));
-        if (!is_eac) improve_angles(row, options.encoding, kReach, band.improved.data() + r * pitch);
+        if (!keeps_slope(band.kinds[0])) improve_angles(row, band.kinds, kReach, band.improved.data() + r * pitch);
     }
     band.set_parts(RdoParts(level, first).of_blocks({kBlockEdge, kBlockEdge}, blocks_across(level.width), count));
     band.plain_chords.resize(16 * band.blocks.size());

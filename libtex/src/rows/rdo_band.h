@@ -9,6 +9,7 @@
 
 #include <tex/pack.h>
 
+#include "blocks/block_half.h"
 #include "kernels/encode.h"
 #include "rows/rdo_runs.h"
 
@@ -28,8 +29,8 @@ struct RdoAngles {
 };
 
 struct RdoBand : RdoBlocks {
-    Encoding encoding = Encoding::bc5;
-    int window = 0;  // bytes
+    const HalfKind* kinds = nullptr;  // of x and y
+    int window = 0;                   // bytes
     std::vector<RdoBlock> blocks;
     std::vector<std::byte> improved;      // the same or better literals
     std::vector<float> plain_chords;      // 16 a block

@@ -61,7 +61,7 @@ private:
 
 HalvesPass::HalvesPass(const RdoBand& band, const ByteCounts& literals)
     : RdoRuns(band), band_(band), literal_bits_(literal_bits(literals)),
-      sources_(band.encoding, band.window, band.count()) {}
+      sources_(band.kinds, band.window, band.count()) {}
 
 void HalvesPass::set_lambda(float lambda) {
     lambda_ = lambda;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "blocks/block_half.h"
+#include "rows/codecs.h"
 #include "rows/rdo_astc_band.h"
 #include "rows/rdo_astc_pass.h"
 #include "rows/rdo_band.h"
@@ -221,7 +221,7 @@ int rdo_band_rows(const PackOptions& options, int base_width) {
 
 void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
                    const PackOptions& options, std::byte* blocks, RdoTally* tally) {
-    assert(is_optimised(options) && has_halves(options.encoding));
+    assert(is_optimised(options) && codec_of(options.encoding).encode_halves != nullptr);
     const RdoBand band = read_band(rows, count, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_pass(band, literals); }, options, blocks, tally);
@@ -229,7 +229,7 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Exte
 
 void optimise_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
                         std::byte* blocks, RdoTally* tally) {
-    assert(is_optimised(options) && !has_halves(options.encoding));
+    assert(is_optimised(options) && codec_of(options.encoding).whole != nullptr);
     const RdoAstcBand band = read_astc_band(xy, height, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_astc_pass(band, literals); }, options, blocks, tally);

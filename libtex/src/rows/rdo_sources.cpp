@@ -9,8 +9,8 @@
 
 namespace tex::inline v1 {
 
-RdoSources::RdoSources(Encoding encoding, int window, std::size_t most) : reach_(std::max(1, window / 16)) {
-    for (int h = 0; h < 2; ++h) halves_.emplace_back(half_kind(encoding, h), most);
+RdoSources::RdoSources(const HalfKind kinds[2], int window, std::size_t most) : reach_(std::max(1, window / 16)) {
+    for (int h = 0; h < 2; ++h) halves_.emplace_back(kinds[h], most);
     const auto farthest = static_cast<std::size_t>(std::min(reach_, static_cast<int>(most)));
     prices_.resize(farthest);
 }

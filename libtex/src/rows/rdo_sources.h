@@ -9,8 +9,6 @@
 #include <cstddef>
 #include <vector>
 
-#include <tex/format.h>
-
 #include "kernels/copy_search.h"
 #include "rows/rdo_halves.h"
 
@@ -36,7 +34,7 @@ public:
     static constexpr int kMostPairs = 3;
 
     // `window` is in bytes, `most` the number of blocks of the band. Throws std::bad_alloc.
-    RdoSources(Encoding encoding, int window, std::size_t most);
+    RdoSources(const HalfKind kinds[2], int window, std::size_t most);
 
     void set_lambda(float lambda);
 

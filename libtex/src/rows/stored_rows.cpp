@@ -11,8 +11,7 @@ namespace tex::inline v1 {
 void StoredRows::decode(int j, int i, int count, const ChannelRows& rows, std::ptrdiff_t stride) const {
     const std::byte* from = bytes + static_cast<std::size_t>(j / info.block.height) * pitch +
                             static_cast<std::size_t>(i / info.block.width) * info.block_bytes;
-    if (info.has_blocks()) return decode_row_of_blocks(format, from, count, rows, stride);
-    decode_texels(format, from, count, rows);
+    decode_row(format, from, count, rows, stride);
 }
 
 // Whole blocks go directly to the caller's rows, what is left through the stack.

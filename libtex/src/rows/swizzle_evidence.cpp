@@ -7,7 +7,7 @@
 
 #include <tex/format.h>
 
-#include "blocks/astc_decode.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -46,7 +46,7 @@ bool SwizzleEvidence::Range::is_constant() const { return !(greatest - least > k
 
 SwizzleEvidence::SwizzleEvidence(Extent extent, const Texture& head)
     : extent_(extent), is_float_(format_info(head.format).sample == SampleKind::floating),
-      x_in_grey_(head.x_in_grey || is_astc(head.format)), step_(step_of(extent)) {}
+      x_in_grey_(head.x_in_grey || format_row(head.format).codec->swizzle == kSwizzleXxxy), step_(step_of(extent)) {}
 
 void SwizzleEvidence::add_row(int j, const float* const (&channels)[4]) {
     if (j % step_ != 0) return;

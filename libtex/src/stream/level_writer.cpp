@@ -19,7 +19,6 @@
 #include "formats/file_types.h"
 #include "formats/reader/reader.h"
 #include "rows/pack_rows.h"
-#include "rows/roughness_rows.h"
 #include "stream/texture_writer.h"
 #include "threads/no_throw.h"
 

@@ -19,7 +19,7 @@
 #include "formats/file_layout.h"
 #include "rows/other_rows.h"
 #include "rows/rdo_rows.h"
-#include "rows/roughness_channels.h"
+#include "rows/roughness_rows.h"
 
 namespace tex::inline v1 {
 

@@ -6,7 +6,7 @@
 #include <tex/mip.h>
 #include <tex/types.h>
 
-#include "rows/roughness_channels.h"
+#include "rows/roughness_rows.h"
 #include "threads/parallel.h"
 
 namespace tex::inline v1 {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "blocks/astc_decode.h"
 #include "formats/bytes.h"
 #include "formats/channels.h"
 #include "formats/size_limits.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -20,7 +20,7 @@ Error bad_data(const std::string& name, std::string reason) { return {ErrorCode:
 
 std::optional<Format> format_of_blocks(int width, int height) {
     for (const Named<Format>& row : kFormatNames) {
-        if (is_astc(row.value) && format_info(row.value).block == Extent{width, height}) return row.value;
+        if (holds_astc(row.value) && format_info(row.value).block == Extent{width, height}) return row.value;
     }
     return std::nullopt;
 }
@@ -30,6 +30,8 @@ void write_side(ByteWriter& writer, int texels) {
 }
 
 }  // namespace
+
+bool holds_astc(Format format) { return format_row(format).codec->khr_model == kKhrAstc; }
 
 FileLayout astc_layout(const TextureHead& head, const WriteOptions&) {
     const Extent block = format_info(head.format).block;

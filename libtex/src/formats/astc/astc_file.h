@@ -21,6 +21,8 @@ namespace tex::inline v1 {
 
 inline constexpr std::string_view kAstcMagic = "\x13\xab\xa1\x5c";
 
+[[nodiscard]] bool holds_astc(Format format);
+
 // Precondition: the format is ASTC, and there is one level.
 [[nodiscard]] FileLayout astc_layout(const TextureHead& head, const WriteOptions& options);
 

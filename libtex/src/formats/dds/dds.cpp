@@ -14,10 +14,10 @@
 
 #include "formats/bytes.h"
 #include "formats/dds/dds_format.h"
-#include "formats/format_codes.h"
 #include "formats/layers.h"
 #include "formats/normal_mark.h"
 #include "formats/size_limits.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -68,10 +68,21 @@ bool is_dxt5nm(const Swizzle& swizzle) {
     return swizzle[0] != Component::x && swizzle[1] == Component::y && swizzle[3] == Component::x;
 }
 
+// What D3DFORMATs are as masks. Blue is first, as Direct3D 9 stores it: some readers (ImageMagick 6) ignore the masks.
+constexpr std::pair<std::uint32_t, DdsPixelFormat> kMasked[] = {
+    {kD3dL8, {kDdpfLuminance, 0, 8, {0xff, 0, 0, 0}}},
+    {kD3dL16, {kDdpfLuminance, 0, 16, {0xffff, 0, 0, 0}}},
+    {kD3dR8G8B8, {kDdpfRgb, 0, 24, {0xff0000, 0xff00, 0xff, 0}}},
+    {kD3dA8R8G8B8, {kDdpfRgb | kDdpfAlphaPixels, 0, 32, {0xff0000, 0xff00, 0xff, 0xff000000}}},
+};
+
 // The pixel format of a legacy header; nullopt if Direct3D 9 lacks the format.
 std::optional<DdsPixelFormat> legacy_pixel_format(const TextureHead& head) {
-    DdsPixelFormat legacy = codes_of(widened(head.format)).legacy;
-    if (legacy.flags == 0) return std::nullopt;
+    const std::uint32_t number = format_row(widened(head.format)).d3d9;
+    if (number == 0) return std::nullopt;
+    const auto masked =
+        std::find_if(std::begin(kMasked), std::end(kMasked), [&](const auto& row) { return row.first == number; });
+    DdsPixelFormat legacy = masked != std::end(kMasked) ? masked->second : DdsPixelFormat{kDdpfFourCc, number, 0, {}};
     // ATI2 without this code leaves open whether x or y is first. The mark of libtex says it.
     if (legacy.four_cc == fourcc("ATI2") && head.swizzle[0] != Component::y) legacy.bit_count = fourcc("A2XY");
     return legacy;
@@ -224,7 +235,7 @@ int wanted_levels(const Header& header, Extent extent, std::vector<std::string>&
 
 FileLayout dds_layout(const TextureHead& head, const WriteOptions& options) {
     std::optional<DdsPixelFormat> legacy = legacy_pixel_format(head);
-    const std::uint32_t dxgi = codes_of(widened(head.format)).dxgi.exact;
+    const std::uint32_t dxgi = format_row(widened(head.format)).dxgi.exact;
     const bool dx10 = !legacy || (options.dds_header == DdsHeader::dx10 && dxgi != 0);
     DdsPixelFormat pixel_format = dx10 ? DdsPixelFormat{kDdpfFourCc, fourcc("DX10"), 0, {}} : *legacy;
     if (options.dds_mark) {

@@ -8,7 +8,7 @@
 #include "formats/bytes.h"
 #include "formats/channels.h"
 #include "formats/dds/dds_refused.h"
-#include "formats/format_codes.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -209,7 +209,7 @@ Result<DdsTexels> texels_of(const DdsPixelFormat& pixel_format) {
 }
 
 Result<DdsTexels> texels_of_dxgi(std::uint32_t dxgi) {
-    if (const auto marked = find_format(&FormatCodes::dxgi, dxgi)) {
+    if (const auto marked = find_format(&FormatRow::dxgi, dxgi)) {
         DdsTexels texels = texels_in(marked->format);
         texels.srgb = marked->srgb;
         return texels;

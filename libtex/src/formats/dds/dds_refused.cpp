@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "formats/bytes.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {

@@ -11,10 +11,10 @@
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
-#include "formats/format_codes.h"
 #include "formats/ktx2/key_values.h"
 #include "formats/layers.h"
 #include "formats/size_limits.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -83,7 +83,7 @@ bool describe_ktx_texels(const KtxHeader& header, StoredTexture& stored) {
     if (header.type == 0) {  // blocks
         const bool is_bc1 = header.internal_format == kGlBc1RgbSrgb;
         const auto marked = is_bc1 ? std::optional(MarkedFormat{Format::bc1_unorm, true})
-                                   : find_format(&FormatCodes::gl, header.internal_format);
+                                   : find_format(&FormatRow::gl, header.internal_format);
         if (!marked) return false;
         texture.format = marked->format;
         texture.srgb = marked->srgb;

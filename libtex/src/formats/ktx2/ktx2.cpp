@@ -13,7 +13,6 @@
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
-#include "formats/format_codes.h"
 #include "formats/ktx2/key_values.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/ktx2/level_inflater.h"
@@ -22,6 +21,7 @@
 #include "formats/layers.h"
 #include "formats/normal_mark.h"
 #include "formats/size_limits.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -44,7 +44,7 @@ constexpr VkRow kVkFormats[] = {
 };
 
 std::optional<VkRow> find_vk_format(std::uint32_t vk) {
-    if (const auto marked = find_format(&FormatCodes::vk, vk)) return VkRow{vk, marked->format, marked->srgb, false};
+    if (const auto marked = find_format(&FormatRow::vk, vk)) return VkRow{vk, marked->format, marked->srgb, false};
     for (const VkRow& row : kVkFormats) {
         if (row.vk == vk) return row;
     }
@@ -261,7 +261,7 @@ FileLayout ktx2_layout(const TextureHead& head) {
 
     ByteWriter writer;
     writer.text(kKtx2Magic);
-    writer.u32(codes_of(stored).vk.exact);
+    writer.u32(format_row(stored).vk.exact);
     writer.u32(info.has_blocks() ? 1 : static_cast<std::uint32_t>(info.bits / 8));  // bytes of one value
     writer.u32(static_cast<std::uint32_t>(head.extent.width));
     writer.u32(static_cast<std::uint32_t>(head.extent.height));

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "formats/bytes.h"
-#include "formats/format_codes.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -77,7 +77,7 @@ std::vector<Sample> texel_samples(const FormatInfo& info) {
 
 std::vector<std::byte> data_format_descriptor(Format format) {
     const FormatInfo info = format_info(format);
-    const std::uint32_t model = codes_of(format).khr_model;
+    const std::uint32_t model = format_row(format).codec->khr_model;
     const std::vector<Sample> samples = info.has_blocks() ? block_samples(info, model) : texel_samples(info);
     const auto block_bytes = static_cast<std::uint32_t>(24 + 16 * samples.size());
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "formats/bytes.h"
-#include "formats/format_codes.h"
 #include "formats/ktx2/ktx2.h"
+#include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -44,7 +44,7 @@ std::string edges_text(const std::array<int, 4>& edges) {
 
 bool same_model(std::uint32_t stated, Format format) {
     if (stated == 0) return true;
-    return format_info(format).has_blocks() ? stated == codes_of(format).khr_model : stated < kFirstBlockModel;
+    return format_info(format).has_blocks() ? stated == format_row(format).codec->khr_model : stated < kFirstBlockModel;
 }
 
 // Texel blocks without edges are those of the model. ASTC has blocks of many extents, and VkFormat tells which.
