@@ -58,8 +58,8 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
                   "standard input");
     command.finds_things();
     rules_.add(command);
-    mesh_.add_input(command);
     command.flag(lists_y_, "--list-y", "print which way green points in each map");
+    mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
         if (running.json && documents_.is_for_github())

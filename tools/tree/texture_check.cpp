@@ -92,12 +92,12 @@ std::string TextureCheck::sentence_of(const Finding& finding, const CheckReport&
     of_input.file = input;
     Fix fix = fix_of(finding, of_input, rules_.demands().checks.require);
     if (fix.text.empty()) return sentence;
+    if (input == report.file) return sentence + "; " + fix.text;
     // What the file is like, and its levels, the rule of the manifest decides.
-    const bool is_of_rule = finding.rule->family == RuleFamily::file || finding.rule->family == RuleFamily::mips;
-    if (!fix.is_command) return sentence + "; " + fix.text;
-    const char* const of_output = is_of_rule ? "; the rule decides that, as the options of this do: "
-                                             : "; if the input has that fault, too, this mends it: ";
-    return sentence + (input == report.file ? "; " : of_output) + fix.text;
+    if (finding.rule->family == RuleFamily::file || finding.rule->family == RuleFamily::mips)
+        return sentence + "; the rule decides that" +
+               (fix.is_command ? ", as the options of this do: " + fix.text : "");
+    return sentence + (fix.is_command ? "; if the input has that fault, too, this mends it: " : "; ") + fix.text;
 }
 
 Result<std::vector<std::string>> TextureCheck::findings_of_input(const std::string& path, const ReadOptions& read,
