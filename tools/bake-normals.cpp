@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <variant>
 
 #include <fmt/format.h>
 #include <tex/tex.h>
@@ -26,6 +27,7 @@ public:
     explicit BakeNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     void note_strength(cli::Job& job, const Strength& strength) const;
     template <class Report>
     void warn_of_flat(cli::Job& job, const Report& done) const;
@@ -40,6 +42,12 @@ private:
         note_strength(job, done.strength);
         warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
         warn_of_flat(job, done);
+    }
+    [[nodiscard]] Result<void> accept(const cli::Job& job) const override { return reader_.accept(job); }
+    void add_accept(Step& step, const cli::Job& job) const override {
+        std::get<BakeFileOptions>(step).accept = [this, &job](const HeightReport& heights) {
+            return heights.luma_texels > 0 ? reader_.accept(job) : Result<void>();
+        };
     }
     [[nodiscard]] Error with_remedy(const Error& error) const override { return cli::HeightReader::with_remedy(error); }
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
@@ -127,6 +135,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
+    note_output(job, {baked->extent, baked->levels, baked->left_out > 0, with.pack.encoding});
     note_strength(job, baked->strength);
     if (baked->is_stated && job.task.output != "-")
         job.say(

@@ -38,6 +38,7 @@ public:
     explicit BlendNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     void add_blend();
     [[nodiscard]] bool joins() const { return layers_.details().empty(); }
     // The details of a task: the files of --detail, or the inputs after the base.
@@ -160,6 +161,7 @@ Result<void> BlendNormals::process(cli::Job& job) {
     cli::report_input(job, blended->source);
     cli::wrote_levels(job, job.task.output, blended->levels);
     cli::report_texture(job, blended->extent, blended->levels, blended->pack, blended->bytes, blended->rdo);
+    note_output(job, {blended->extent, blended->levels, blended->left_out > 0, blended->pack.encoding});
     return {};
 }
 

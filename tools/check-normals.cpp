@@ -44,6 +44,8 @@ private:
                                                    const Model& model, const ModelMap& map);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
+    bool lists_y_ = false;
+    std::vector<std::string> idle_rules_;
     cli::RuleOptions rules_;
     cli::TangentSpaceOptions mesh_;
     cli::CheckDocuments documents_;
@@ -56,11 +58,14 @@ private:
 CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     command.usage("FILE...");
     command.usage("--list | --explain ID");
-    command.input("FILE...", "textures and pictures of normals, and glTF models with their maps; - is standard input");
+    command.input("FILE...",
+                  "textures and pictures of normals, glTF models with their maps, and folders of these; - is "
+                  "standard input");
     command.finds_things();
     rules_.add(command);
     command.flag(classifies_, "--classify", "print what each picture holds: normals, heights, colours, ...")
         .often(2, "print what each picture holds: normals, heights, colours ...");
+    command.flag(lists_y_, "--list-y", "print which way green points in each map");
     mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
@@ -73,6 +78,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
         if (documents_.has_page()) throw cli::UsageError("--list and --explain write no --report");
         if (mesh_.has_mesh()) throw cli::UsageError("--list and --explain take no --mesh");
     });
+    files.reads_folders = true;
     files.add_inputs(command, [this] { return reads_nothing(); });
     running.add(command);
     command.example("check-normals --require mips=full --require y=up 'art/**/*_n.dds'",
@@ -120,7 +126,9 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     if (mesh_.has_mesh()) {  // jobs share it; one error is enough
         if (const auto space = mesh_.input(0, running.read, {running.threads, {}}); !space) return space.error();
     }
-    return rules_.read(command, tasks, running.read);
+    auto done = rules_.read(command, tasks, running.read);
+    if (done) idle_rules_ = rules_.idle_rules(tasks);
+    return done;
 }
 
 Result<CheckReport> CheckNormals::check_one(cli::Job& job, CheckOptions checks, const Execution& execution) {
@@ -149,14 +157,15 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
                                    [&](const Finding& finding) { return demands.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = demands.checks.require;
-    job.say(documents_.is_for_github()
-                ? cli::github_text(report, require)
-                : cli::findings_text(report, require) + cli::pair_text(report) + cli::seams_text(report));
+    job.say(documents_.is_for_github() ? cli::github_text(report, require)
+                                       : cli::findings_text(report, require) + (lists_y_ ? cli::y_text(report) : "") +
+                                             cli::pair_text(report) + cli::seams_text(report));
     cli::Json json = cli::findings_json(report, require);
     if (known > 0) json["known"] = known;
     {
         const std::lock_guard lock(mutex_);
         totals_.add(report, known);
+        totals_.fails = totals_.fails || fails;
     }
     const cli::JudgedReport judged{std::move(report), require, demands.fail_on, std::move(waived), seconds};
     if (auto added = documents_.add(job, judged, mesh, read); !added) return added.error();
@@ -266,6 +275,8 @@ Result<cli::Json> CheckNormals::judge_in_model(cli::Job& job, CheckReport report
 }
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {
+    for (const std::string& sentence : idle_rules_) console.warning(sentence);
+    totals_.left_out = files.left_out;
     const std::string summary = classifies_ ? kinds_.text() : totals_.text();
     const cli::ExitCode printed = running.json ? cli::ExitCode::done : console.print(summary + "\n");
     return std::max(printed, documents_.write(console, summary));

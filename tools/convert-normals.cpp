@@ -44,6 +44,7 @@ public:
     explicit ConvertNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
         rules.models = conversion_.spaces.material();
@@ -161,6 +162,7 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     MipOptions mip = mips_.options(mips_.levels_for(job.task), {});
     mip.any_z = conversion_.makes_object();
     others.apply(mip);
+    const Extent whole = converted->map.extent();
     const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();
     auto texture = pack(*chain, pack_with, job.until(0.95));
@@ -171,6 +173,7 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     const auto written = cli::write_levels(job, std::move(*texture), output.of(job.task.engine).write_options(job));
     if (!written) return written.error();
     cli::report_texture(job, extent, written->levels, pack_with, written->bytes, rdo);
+    note_output(job, {extent, written->levels, extent != whole, pack_with.encoding});
     return {};
 }
 

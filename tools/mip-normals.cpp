@@ -20,6 +20,7 @@ public:
     explicit MipNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] PackFileOptions options(cli::Job& job) const override;

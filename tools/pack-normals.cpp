@@ -19,6 +19,7 @@ public:
     explicit PackNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{Container::dds};
         rules.models = material_;

@@ -33,6 +33,7 @@ public:
     explicit TransferNormals(const cli::ProgramRow& row);
 
 private:
+    [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     // Tiles of a mesh share the high one, and each has a tree of it.
@@ -201,9 +202,11 @@ Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, Transfe
         const cli::TransferReport::Entry entry{meshes.low, arguments, *meshes.high, maps, *texture};
         if (auto added = report_.add(job, entry); !added) return added;
     }
+    const Extent extent = texture->extent();
     const auto written = cli::write_levels(job, std::move(*texture), own.write_options(job));
     if (!written) return written.error();
-    cli::report_texture(job, rays_.extent(), written->levels, with, written->bytes, rdo);
+    cli::report_texture(job, extent, written->levels, with, written->bytes, rdo);
+    note_output(job, {extent, written->levels, extent != rays_.extent(), with.encoding});
     return {};
 }
 

@@ -61,6 +61,7 @@ void each_field(SourceOptions& o, F& f) {
     f("fill_background", o.fill_background);
     f("measure_y", o.measure_y);
     f("file_y_first", o.file_y_first);
+    f("y_otherwise", o.y_otherwise);
 }
 
 // How a file is packed: what is not given follows from the file.

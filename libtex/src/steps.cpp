@@ -57,6 +57,7 @@ private:
     Result<void> take(const Report& done) const {
         report.extent = done.extent;
         report.levels = done.levels;
+        report.left_out = done.left_out;
         report.bytes = done.bytes;
         return {};
     }

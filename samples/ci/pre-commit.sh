@@ -1,8 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # .git/hooks/pre-commit: refuses a commit whose normal maps have errors. Checks the staged contents of the staged files.
-# check-normals is in the Debian package libtex-tools.
+# check-normals is in the Debian package libtex-tools. The repository's checks.toml and known.json are used if it has
+# them: what the project demands, and the findings that it accepts (check-normals --baseline-write known.json).
 set -eu
+config=checks.toml
+baseline=known.json
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/staged"
@@ -10,6 +13,11 @@ git diff --cached --name-only -z --diff-filter=ACMR -- '*_n.dds' '*_n.ktx2' '*_n
     >"$work/list"
 [ -s "$work/list" ] || exit 0
 git checkout-index -z --stdin --prefix="$work/staged/" <"$work/list"
+# Both stand beside the maps there as in the repository, so that their patterns and names fit.
+git ls-files -z -- "$config" "$baseline" | git checkout-index -z --stdin --prefix="$work/staged/"
 # In that folder, so that names and fixes are those of the repository.
 cd "$work/staged"
-check-normals --require y=up --quiet --files-from "$work/list"
+set -- --quiet --files-from "$work/list"
+if [ -f "$config" ]; then set -- --config "$config" "$@"; else set -- --require y=up "$@"; fi
+if [ -f "$baseline" ]; then set -- --baseline "$baseline" "$@"; fi
+check-normals "$@"

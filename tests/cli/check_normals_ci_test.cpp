@@ -97,4 +97,23 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
               0);
 }
 
+// Both stand in the repository, and fit the copies of the staged files.
+TEST_F(CheckNormalsCi, HookUsesTheConfigurationAndTheBaseline) {
+    EXPECT_EQ(shell(scratch_, "cp samples/ci/pre-commit.sh .git/hooks/pre-commit").code, 0);
+    scratch_.write("checks.toml", "require = [\"y=up\"]\n[[rule]]\nmatch = \"art/dx/*\"\nrequire = [\"y=down\"]\n");
+    EXPECT_EQ(shell(scratch_, "mkdir -p art/dx").code, 0);
+    bake("art/dx/a_n.dds", "down");
+    bake("art/old_n.dds", "down");
+    EXPECT_EQ(shell(scratch_,
+                    "check-normals --config checks.toml art --baseline-write known.json && "
+                    "git add checks.toml known.json art && git commit -qm accepted")
+                  .code,
+              0);
+    bake("art/dx/a_n.dds", "up");
+    const Ran refused = shell(scratch_, "git add art && git commit -qm wrong");
+    EXPECT_NE(refused.code, 0);
+    EXPECT_NE((refused.out + refused.err).find("art/dx/a_n.dds"), std::string::npos) << refused.out << refused.err;
+    EXPECT_EQ((refused.out + refused.err).find("art/old_n.dds"), std::string::npos) << refused.out << refused.err;
+}
+
 }  // namespace tex::cli

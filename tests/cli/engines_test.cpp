@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <tex/tex.h>
@@ -256,6 +257,29 @@ TEST(EnginesPage, EveryCommandOfTheRecipesRuns) {
     EXPECT_GE(count, 2 * std::size(kWanted));
     for (const WantedFile& wanted : kWanted)
         EXPECT_NE(text.find(std::string("--for ") + wanted.engine + " "), std::string::npos) << wanted.engine;
+}
+
+// Each line of another program has ours below it, or words that say why not.
+TEST(MigrationPage, EveryCommandOfOursRuns) {
+    const Scratch scratch;
+    for (const auto& [sample, name] : {std::pair("bricks.png", "rock_h.png"), std::pair("crate_low.glb", "low.glb"),
+                                       std::pair("crate_high.glb", "high.glb")})
+        scratch.add_sample(sample, name);
+    ASSERT_EQ(shell(scratch, "bake-normals rock_h.png -o rock_n.png --bumpiness 8 --no-sync").code, 0);
+    std::ifstream page(TEX_BINARY_DIR "/man/normal-maps-migrate.7");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    ASSERT_NE(text, "");
+    std::size_t count = 0;
+    for (const std::string& line : lines_of(text)) {
+        if (!line.starts_with(".Dl ")) continue;
+        const Ran ran = shell(scratch, line.substr(4));
+        EXPECT_EQ(ran.code, 0) << line << "\n" << ran.out << ran.err;
+        ++count;
+    }
+    EXPECT_GE(count, 30u);
+    for (const char* program : {"nvcompress", "texconv", "CompressonatorCLI", "toktx", "ktx create", "oiiotool",
+                                "maketx", "convert", "crunch", "XNORMAL", "sbsbaker", "BLENDER"})
+        EXPECT_NE(text.find(program), std::string::npos) << program;
 }
 
 }  // namespace

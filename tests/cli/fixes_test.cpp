@@ -295,6 +295,18 @@ TEST_F(Fixes, ThatWouldLoseDataAreSentences) {
     EXPECT_EQ(finding(check("kept.png", "--require y=down"), "N212")["id"], "N212");
 }
 
+// DXT5 with normals in its colours and data in its alpha: no encoding of blocks holds that, and 8 bits do.
+TEST_F(Fixes, OfBlocksWithAlphaKeepItIn8Bits) {
+    go("pack-normals n.exr -o plain.png --format rgb8 --no-sync;"
+       "convert plain.png waves.png -alpha off -compose CopyOpacity -composite -define dds:compression=dxt5 dxt5.dds");
+    const auto found = finding(check("dxt5.dds", "--require y=down"), "N401");
+    const std::string fix = found.value("fix", "");
+    EXPECT_NE(fix.find("--format rgba8 -o FIXED.dds"), std::string::npos) << found;
+    go(fix +
+       " --no-sync; unpack-normals dxt5.dds -o x.png --alpha-out a.png --no-sync --quiet;"
+       "unpack-normals FIXED.dds -o x.png --alpha-out b.png --no-sync --quiet; cmp a.png b.png");
+}
+
 // The advice of N309, which no command follows: turn the picture back, and let blend-normals turn the vectors, too.
 TEST_F(Fixes, NameFilesThatBeginAsListsDo) {
     go("bake-normals waves.png -o ./@n.png --bumpiness 8 --y down --no-sync");

@@ -77,7 +77,7 @@ const ReportLine kReports[] = {
     {"bake-normals", {"missing.png", "-o", "b.dds"}},
     {"mip-normals", {"n.png", "-o", "m.dds"}},
     {"mip-normals", {"n.png", "-o", "m2.dds", "--roughness-out", "r.dds"}},
-    {"pack-normals", {"n.png", "-o", "p.ktx2"}},
+    {"pack-normals", {"n.png", "-o", "p.ktx2", "--mips", "keep"}},
     {"unpack-normals", {"a.dds", "-o", "u.png"}},
     {"unpack-normals", {"a.dds", "--out-dir", ".", "--name", "u{level}.png", "--level", "all"}},
     {"scale-normals", {"n.png", "-o", "s.png", "--scale", "2"}},

@@ -118,7 +118,7 @@ TEST_F(MeasuredY, MapsThatDoNotShowItAreErrorsThatNameThem) {
         EXPECT_EQ(ran.err,
                   std::string(command) +
                       ": error: flat.png: which way green points does not show clearly in the texels; say up or "
-                      "down instead of measured\n");
+                      "down instead of measured, or \"measured, else up\"\n");
         EXPECT_FALSE(scratch_.has("out.png"));
     }
     const Ran blend = run(scratch_, "blend-normals",
@@ -183,6 +183,33 @@ TEST_F(MeasuredY, ItIsAKeyOfManifests) {
     make("scale-normals", {"down.png", "-o", "s.exr", "--scale", "2", "--y-in", "down", "--format", "float"});
     make("mip-normals", {"s.exr", "-o", "s.dds", "--y", "up"});
     EXPECT_TRUE(scratch_.read("out/down.dds") == scratch_.read("s.dds"));
+}
+
+TEST_F(MeasuredY, FallsBackOnlyIfTheOptionSaysWhereTo) {
+    const Ran flat = shell(scratch_, "convert -size 64x64 'xc:rgb(128,128,255)' flat.png");
+    ASSERT_EQ(flat.code, 0) << flat.err;
+    const Ran refused = run(scratch_, "pack-normals", {"flat.png", "-o", "a.tga", "--y-in", "measured", "--no-sync"});
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("\"measured, else up\""), std::string::npos) << refused.err;
+    for (const std::string y : {"up", "down"}) {
+        for (const char* command : {"pack-normals", "unpack-normals"}) {
+            const Ran made = run(scratch_, command,
+                                 {"flat.png", "-o", "a.exr", "--y-in", "measured, else " + y, "--json", "--no-sync"});
+            EXPECT_EQ(made.code, 0) << command << made.err;
+        }
+        make("pack-normals", {"down.png", "-o", "a.tga", "--y-in", "measured, else " + y, "--y", "up"});
+        make("pack-normals", {"down.png", "-o", "b.tga", "--y-in", "down", "--y", "up"});
+        EXPECT_TRUE(scratch_.read("a.tga") == scratch_.read("b.tga")) << "what the texels show comes first";
+    }
+    const Ran json = run(scratch_, "pack-normals",
+                         {"flat.png", "-o", "a.exr", "--y-in", "measured, else down", "--json", "--no-sync"});
+    EXPECT_NE(json.out.find("\"y\":\"down\""), std::string::npos) << json.out;
+    for (const char* wrong : {"up, else down", "measured, down", "measured, else left", "measured,"})
+        EXPECT_EQ(run(scratch_, "pack-normals", {"flat.png", "-o", "a.tga", "--y-in", wrong}).code, 2) << wrong;
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"flat.png\"\nname = \"made.tga\"\n"
+                   "steps = [ { pack = { y-in = \"measured, else up\" } } ]\n");
+    EXPECT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
 }
 
 }  // namespace tex::cli

@@ -59,6 +59,7 @@ TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
     for (const char* command : {"mip-normals", "pack-normals", "unpack-normals", "scale-normals", "preview-normals",
                                 "blend-normals", "convert-normals", "integrate-normals"}) {
         std::vector<std::string> arguments = {"srgb.dds", "plain.exr", "--out-dir", command, "--no-sync"};
+        if (std::string_view(command) == "pack-normals") arguments.insert(arguments.end(), {"--mips", "keep"});
         if (std::string_view(command) == "scale-normals") arguments.insert(arguments.end(), {"--scale", "2"});
         if (std::string_view(command) == "blend-normals") arguments.insert(arguments.end(), {"--detail", "plain.exr"});
         if (std::string_view(command) == "convert-normals")
@@ -72,12 +73,14 @@ TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
 
 // Standard error sums up what concerns many files; the JSON does not.
 TEST_F(Warnings, AboutGuessesAreInTheLineOfEachFile) {
-    const auto lines = quiet("pack-normals", {"a.png", "plain.exr", "b.png", "--out-dir", "out", "--no-sync"});
+    const auto lines =
+        quiet("pack-normals", {"a.png", "plain.exr", "b.png", "--out-dir", "out", "--mips", "keep", "--no-sync"});
     ASSERT_EQ(lines.size(), 3u);
     expect_warning(lines[0], "a.png", "layout not stated; guessed ");
     EXPECT_EQ(lines[1]["warnings"], json::array());
     expect_warning(lines[2], "b.png", "layout not stated; guessed ");
-    const Ran spoken = run(scratch_, "pack-normals", {"b.png", "a.png", "--out-dir", "out", "--no-sync"});
+    const Ran spoken =
+        run(scratch_, "pack-normals", {"b.png", "a.png", "--out-dir", "out", "--mips", "keep", "--no-sync"});
     ASSERT_EQ(lines_of(spoken.err).size(), 1u) << spoken.err;
     EXPECT_NE(spoken.err.find("a.png and 1 more: layout not stated"), std::string::npos) << spoken.err;
 }
@@ -118,7 +121,8 @@ TEST_F(Warnings, CountNormalsThatAreNotFinite) {
     std::memcpy(texture.levels[0].bytes.data(), texels, sizeof texels);
     ASSERT_TRUE(write_texture(scratch_.path("bad.exr"), texture));
     for (const std::string command : {"mip-normals", "pack-normals", "unpack-normals"}) {
-        const auto lines = quiet(command, {"bad.exr", "-o", "bad.dds", "--drop", "--no-sync"});
+        const auto lines =
+            quiet(command, {"bad.exr", "-o", command == "pack-normals" ? "bad.png" : "bad.dds", "--drop", "--no-sync"});
         expect_warning(lines[0], "bad.exr", "2 texels are NaN or infinite, and become flat");
     }
     const auto blended = quiet("blend-normals", {"plain.exr", "bad.exr", "-o", "blend.dds", "--no-sync"});

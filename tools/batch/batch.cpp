@@ -191,6 +191,39 @@ Result<std::vector<Task>> Batch::plan() const {
     return tasks;
 }
 
+void Converter::note_output(Job& job, const OutputFacts& facts, const std::string& about) {
+    const std::string& file = about.empty() ? job.task.map_path() : about;
+    const Extent block = format_info(encoding_info(facts.encoding).format).block;
+    const bool has_blocks = can_hold_blocks(job.task.container) && block.texels() > 1;
+    // A texture that was made with one level is meant to have one.
+    const std::optional<Container> from = container_of(job.task.map_path());
+    const bool is_from_picture = !from || !can_hold_blocks(*from);
+    const MipChainOptions* const chain = mip_chain();
+    if (chain != nullptr) {
+        if (is_from_picture && has_blocks && facts.levels == 1 && chain->keeps_unasked(job.task) &&
+            level_count(facts.extent) > 1) {
+            repeated_.add(job, file,
+                          "one level is written, as in the input, and flickers from afar; --mips all builds the "
+                          "smaller ones (--mips keep: without this warning)");
+        }
+        const int side = std::max(facts.extent.width, facts.extent.height);
+        if (facts.is_reduced && side < chain->mip.max_side) {
+            repeated_.add(
+                job, file,
+                fmt::format("--max-size {} gives {}x{}: it only halves, and the next larger level is above it",
+                            chain->mip.max_side, facts.extent.width, facts.extent.height));
+        }
+    }
+    // Blocks of ASTC may reach beyond the border. check-normals finds the same (N106).
+    const bool needs_whole_blocks =
+        has_blocks && block == Extent{4, 4} && !name_of(kEncodingNames, facts.encoding).starts_with("astc");
+    if (needs_whole_blocks && (facts.extent.width % block.width != 0 || facts.extent.height % block.height != 0)) {
+        repeated_.add(job, file,
+                      "a side of the base level is no multiple of 4, which block formats need in Direct3D, and in most "
+                      "engines");
+    }
+}
+
 ExitCode Batch::work(Console& console) {
     if (running.quiet) console.be_quiet();
     if (files.output == "-" && console.host().out_is_terminal())
@@ -226,6 +259,7 @@ ExitCode Batch::run_tasks(const std::vector<Task>& tasks, Console& console) {
                                   tasks.size()));
     }
     ExitCode code = std::max(finish(console), reporter.exit_code());
+    repeated_.print(console);
     if (!files.depfile.empty()) {
         write.no_clobber = false;  // every run rewrites its depfile
         const auto text = depfile_text(reporter.dependencies());

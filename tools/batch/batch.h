@@ -19,9 +19,11 @@
 #include "batch/plan.h"
 #include "cli/programs.h"
 #include "options/files.h"
+#include "options/mips.h"
 #include "options/output.h"
 #include "options/run.h"
 #include "tasks/job.h"
+#include "tasks/repeated_warnings.h"
 
 namespace tex::cli {
 
@@ -54,8 +56,18 @@ protected:
     // Called once at the end, for results that concern the whole run.
     [[nodiscard]] virtual ExitCode finish(Console&) { return ExitCode::done; }
 
+    RepeatedWarnings repeated_;  // printed after finish()
+
 private:
     [[nodiscard]] ExitCode run_tasks(const std::vector<Task>& tasks, Console& console);
+};
+
+// What was written.
+struct OutputFacts {
+    Extent extent;  // of the base level
+    int levels = 1;
+    bool is_reduced = false;  // larger levels are left out, as --max-size says
+    Encoding encoding = Encoding::rgb8;
 };
 
 // A command that makes one output from each input (FileOptions::add).
@@ -96,14 +108,26 @@ public:
     [[nodiscard]] virtual bool can_be_step() const { return true; }
     // What process() does, as a step of apply_steps(). Nothing if the command does something else.
     [[nodiscard]] virtual std::optional<Step> step(Job&) { return std::nullopt; }
+    // An error if the job's input is not what the command takes, such as colours instead of normals. Reads all of it.
+    [[nodiscard]] virtual Result<void> accept(const Job&) const { return {}; }
+    // Makes a step of this command look for that while it reads the job's input, and then make nothing.
+    virtual void add_accept(Step&, const Job&) const {}
     // Prints the warnings that the step's result calls for. Any thread may call this.
     virtual void note(Job&, const StepsReport&) {}
+    // Warns of what the output of a job lacks although nobody asked for that: smaller levels, sides that blocks need,
+    // the size of --max-size. `about` is the file that is named; empty: the input. Any thread may call this.
+    void note_output(Job& job, const OutputFacts& facts, const std::string& about = {});
     // The error with the option that avoids it, if there is one.
     [[nodiscard]] virtual Error with_remedy(const Error& error) const { return error; }
     // As finish().
-    void finish_steps(Console& console) { std::ignore = finish(console); }
+    void finish_steps(Console& console) {
+        std::ignore = finish(console);
+        repeated_.print(console);
+    }
 
 protected:
+    // The option group of levels, if the command has it.
+    [[nodiscard]] virtual const MipChainOptions* mip_chain() const { return nullptr; }
     [[nodiscard]] virtual OutputRules rules() const { return {}; }
     [[nodiscard]] Result<std::vector<Task>> plan() const override;
 

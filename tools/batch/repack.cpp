@@ -4,6 +4,7 @@
 
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "tasks/written_levels.h"
@@ -17,6 +18,18 @@ ExitCode NormalsConverter::finish(Console& console) {
 
 void NormalsConverter::note(Job& job, const StepsReport& done) {
     for (const MapRead& map : done.maps) normals.note(job, map.file, map.info);
+}
+
+Result<void> NormalsConverter::accept(const Job& job) const {
+    SourceInfo doubtful;
+    doubtful.z_doubtful = !normals.swizzle;
+    return normals.accept(job, job.task.map_path(), doubtful);
+}
+
+void NormalsConverter::add_accept(Step& step, const Job& job) const {
+    const auto accept = [this, &job](const SourceInfo& info) { return normals.accept(job, job.task.map_path(), info); };
+    if (auto* const pack = std::get_if<PackFileOptions>(&step)) pack->accept = accept;
+    if (auto* const blend = std::get_if<BlendFileOptions>(&step)) blend->accept = accept;
 }
 
 void PackCommand::add_files(const char* inputs) {
@@ -59,6 +72,7 @@ Result<void> PackCommand::process(Job& job) {
     report_input(job, packed->source);
     wrote_levels(job, job.task.output, packed->levels);
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
+    note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding});
     report(job, *packed);
     return {};
 }

@@ -24,6 +24,8 @@ public:
     OtherOptions others;
 
     void note(Job& job, const StepsReport& done) override;
+    [[nodiscard]] Result<void> accept(const Job& job) const override;
+    void add_accept(Step& step, const Job& job) const override;
 
 protected:
     [[nodiscard]] ExitCode finish(Console& console) override;

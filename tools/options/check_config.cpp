@@ -62,6 +62,7 @@ private:
         rule.match = globs(table, "match");
         rule.exclude = globs(table, "exclude");
         rule.settings = top_level;
+        rule.line = static_cast<int>(table.source().begin.line);
         add(table, rule.settings);
         return rule;
     }

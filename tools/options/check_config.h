@@ -40,6 +40,7 @@ struct CheckSettings {
 struct CheckRule {
     std::vector<Glob> match, exclude;  // of paths relative to the folder of the configuration
     CheckSettings settings;            // with those of the top level
+    int line = 0;                      // in the configuration
 
     [[nodiscard]] bool takes(const std::string& path) const;
 };

@@ -122,6 +122,13 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
             for (std::string& file : *files) inputs.push_back({std::move(file)});
             continue;
         }
+        if (reads_folders && is_folder(input)) {
+            auto found = pictures_below(input);
+            if (!found) return found.error();
+            left_out += found->others;
+            for (std::string& file : found->files) inputs.push_back({std::move(file)});
+            continue;
+        }
         auto files = inputs_of(input);
         if (!files) return files.error();
         std::move(files->begin(), files->end(), std::back_inserter(inputs));

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -27,7 +28,9 @@ struct FileOptions {
     bool update = false;
     bool no_clobber = false;
     bool no_sync = false;
-    bool tiles = false;  // inputs are tiles of terrains, see batch/grid.h
+    bool reads_folders = false;         // folders among the inputs stand for the pictures in them
+    mutable std::int64_t left_out = 0;  // after list_inputs(): the other files of such folders
+    bool tiles = false;                 // inputs are tiles of terrains, see batch/grid.h
 
     // `joins`: -o can take many inputs and make one output from them; the help says so.
     void add(Command& command, bool joins = false);

@@ -15,6 +15,7 @@
 #include "cli/usage_error.h"
 #include "fields/bake_fields.h"
 #include "fields/height_fields.h"
+#include "options/input_kind.h"
 #include "tasks/other_parts.h"
 
 namespace tex::cli {
@@ -214,6 +215,13 @@ std::string luma_text(std::int64_t texels) {
 
 }  // namespace
 
+Result<void> HeightReader::accept(const Job& job) const {
+    if (heights.options.channel != HeightChannel::automatic) return {};
+    std::string sentence = no_heights_text(job.task.input, job.read_options);
+    if (sentence.empty()) return {};
+    return Error{ErrorCode::bad_data, job.task.input, sentence + kTakeAny};
+}
+
 void HeightReader::note(Job& job, const HeightReport& report) {
     if (heights.options.deband != Deband::off) note_deband(job, report.deband, heights.options.deband);
     job.report["heights"] = name_of(kFileValuesNames, report.stored ? FileValues::stored : FileValues::unit);
@@ -221,10 +229,15 @@ void HeightReader::note(Job& job, const HeightReport& report) {
     if (report.implausible_texels > 0) note_implausible(job, report.implausible_texels, heights.options.channel);
     const bool chose_stored = report.stored && heights.values == FileValues::automatic;
     if (chose_stored) job.remark(kStoredText);
-    if (report.luma_texels > 0) job.remark(luma_text(report.luma_texels));
+    std::string no_heights;
+    if (report.luma_texels > 0) no_heights = no_heights_text(job.task.input, job.read_options);
+    const bool takes_luma = report.luma_texels > 0 && no_heights.empty();
+    if (!no_heights.empty()) job.warn(std::move(no_heights));
+    if (takes_luma) job.remark(luma_text(report.luma_texels));
     const std::lock_guard lock(mutex_);
     if (chose_stored) stored_.add(job.task.input);
-    if (report.luma_texels > 0) luma_.add(job.task.input);
+    if (!takes_luma) return;
+    luma_.add(job.task.input);
     luma_texels_ += report.luma_texels;
 }
 

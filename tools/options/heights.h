@@ -95,6 +95,9 @@ public:
     // Adds the file in which a BIL keeps its header to what its output depends on.
     static void add_header_file(Task& task);
 
+    // An error if the job's input is a normal map.
+    [[nodiscard]] Result<void> accept(const Job& job) const;
+
     // Counts the results of reading a job's heights. Any thread may call this.
     void note(Job& job, const HeightReport& report);
 

@@ -30,6 +30,7 @@ void WrapOptions::add(Command& command, std::string help) {
 }
 
 void MipChainOptions::add(Command& command, bool with_keep, std::string levels_default) {
+    with_keep_ = with_keep;
     command.group("Mip chain");
     Row& row = command.option(
         "--mips", "N", "levels, counting the base level: a number, or a word",

@@ -48,8 +48,16 @@ struct MipChainOptions {
     // pictures.
     [[nodiscard]] int levels_for(const Task& task) const;
 
+    // Whether the levels of the source are kept because nothing else was asked for.
+    [[nodiscard]] bool keeps_unasked(const Task& task) const {
+        return with_keep_ && !levels && !keep && task.engine == nullptr;
+    }
+
     // How `count` levels are built.
     [[nodiscard]] MipOptions options(int count, const WrapOptions& wrap) const;
+
+private:
+    bool with_keep_ = false;
 };
 
 }  // namespace tex::cli

@@ -91,6 +91,18 @@ std::optional<Swizzle> swizzle_of_channels(const std::string& text) {
     return swizzle;
 }
 
+// The direction of "measured, else up", after the comma.
+YAxis y_otherwise(const YIn& before, std::string_view text) {
+    const std::size_t begin = std::min(text.find_first_not_of(' '), text.size());
+    constexpr std::string_view kElse = "else ";
+    const std::optional<YAxis> axis = text.substr(begin).starts_with(kElse)
+                                          ? find_by_name(kYAxisNames, text.substr(begin + kElse.size()))
+                                          : std::nullopt;
+    if (before.axis || !axis)
+        throw UsageError("of several words there are 'measured, else up' and 'measured, else down'");
+    return *axis;
+}
+
 }  // namespace
 
 Encoding encoding_of(const SourceInfo& input, const Task& task) {
@@ -133,10 +145,15 @@ Row& add_y_in(Command& command, const char* name, std::string help, std::functio
     Row& y = command.option(name, "AXIS", std::move(help), [set = std::move(set)](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kYAxisNames));
         names.emplace_back(kMeasured);
-        set({find_by_name(kYAxisNames, known_word(text, names))});
+        const std::size_t comma = text.find(',');
+        YIn given{find_by_name(kYAxisNames, known_word(text.substr(0, comma), names)), {}};
+        if (comma != std::string::npos) given.otherwise = y_otherwise(given, text.substr(comma + 1));
+        set(given);
     });
     y.words = words_of(kYAxisNames);
-    y.words.push_back({kMeasured, "as the texels show; an error if they do not show it clearly"});
+    y.words.push_back({kMeasured,
+                       "as the texels show; an error if they do not show it clearly, but for \"measured, else up\" and "
+                       "\"measured, else down\""});
     y.completes = Completes::words;
     return y;
 }
@@ -147,6 +164,7 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_othe
     add_y_in(command, "--y-in", "which way green points in the input",
              [this](YIn y) {
                  measures_y = !y.axis;
+                 y_otherwise = y.otherwise;
                  unpack.y_axis = y.axis;
              })
         .often(6, "which way green points in the input: up or down")
@@ -175,13 +193,6 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_othe
     command.flag(drops_others, "--drop", "leave out channels that hold no normals, and do not warn of it");
 }
 
-void NormalsReader::warn_of_guesses(Console& console) const {
-    for (const auto& [name, guesses] : guesses_) {
-        const std::string more = guesses.count > 1 ? fmt::format(" and {} more", guesses.count - 1) : std::string();
-        console.warning(fmt::format("{}{}: {}", guesses.first, more, guess_text(name)));
-    }
-}
-
 SourceOptions NormalsReader::options(const Job& job, const Reading& reading) const {
     SourceOptions options;
     options.read = job.read_options;
@@ -189,6 +200,7 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.unpack.swizzle = swizzle;
     if (reading.y) options.unpack.y_axis = reading.y->axis;
     options.measure_y = reading.y ? !reading.y->axis : measures_y;
+    options.y_otherwise = reading.y ? reading.y->otherwise : y_otherwise;
     options.unpack.keep_length = reading.keep_length.value_or(unpack.keep_length);
     if (bc5_order) options.bc5_swizzle = *bc5_order == Bc5Order::xy ? kSwizzleXy : kSwizzleYx;
     options.r_or_a = rg_or_ag;
@@ -226,32 +238,61 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
             "are read so (--range unsigned: the usual way)",
             path);
     }
-    if (info.object_space && !info.z_doubtful) {
+    if (!warn_of_kind(job, path, info)) return;
+    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info);
+    if (info.guessed) guesses_.add(job, path, guess_text(layout_name(info.swizzle)));
+}
+
+std::optional<JudgedPicture> NormalsReader::judged(const Job& job, const std::string& path,
+                                                   const SourceInfo& info) const {
+    constexpr double kMostly = 0.5;  // of a map that is mostly background, the background may be the picture
+    const bool is_guessed = info.guessed && !format_info(info.format).has_blocks();  // grey and alpha, say
+    const bool raises_doubt =
+        info.object_space || (!length_in && (info.z_doubtful || info.background > kMostly || is_guessed));
+    if (!raises_doubt || job.task.model) return std::nullopt;
+    return judge_picture(path, job.read_options);
+}
+
+Result<void> NormalsReader::accept(const Job& job, const std::string& path, const SourceInfo& info) const {
+    const std::optional<JudgedPicture> picture = judged(job, path, info);
+    if (!picture || picture->kind != PictureKind::no_map) return {};
+    return Error{ErrorCode::bad_data, path, no_map_text(*picture) + kTakeAny};
+}
+
+bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const SourceInfo& info) const {
+    const bool doubts_z = info.z_doubtful && !length_in;
+    const std::optional<JudgedPicture> judged = this->judged(job, path, info);
+    const PictureKind kind = judged                                  ? judged->kind
+                             : info.object_space && !info.z_doubtful ? PictureKind::object_space
+                                                                     : PictureKind::normals;
+    const bool has_background = info.background > 0.0 || kind == PictureKind::has_background;
+    if (kind == PictureKind::no_map) {
+        job.warn(no_map_text(*judged), path);
+        return false;
+    }
+    if (kind == PictureKind::object_space) {
         job.warn(
             "its vectors face all directions, as in object space, and are read as tangent space; "
             "convert-normals --from object --mesh FILE converts it",
             path);
-    }
-    if (info.z_doubtful && !length_in) {
+    } else if (kind == PictureKind::inverted) {
         job.warn(
-            "the channel that is read as z does not follow x and y, so it seems to hold other data, such as occlusion "
-            "or heights; --swizzle rg (x in R, y in G) makes z from x and y instead",
+            "its vectors point into the surface: blue, or the whole picture, was inverted; invert it back in an image "
+            "editor, or, if it was blue alone, let --swizzle rg make z from x and y",
+            path);
+    } else if (doubts_z && !has_background) {
+        job.warn(
+            "blue is not the z of its red and green: it seems to hold other data, such as occlusion or heights; "
+            "--swizzle rg (x in R, y in G) leaves it out and makes z from x and y",
             path);
     }
-    if (info.background > 0.0 && warns_of_background) {
+    if (has_background && warns_of_background) {
         job.warn(fmt::format("{:.0f} % of its texels look like background (black, grey or white), which smaller levels "
                              "and block compression mix into the charts; --fill-background fills it",
                              std::max(1.0, 100.0 * info.background)),
                  path);
     }
-    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info);
-    if (!info.guessed) return;
-    const std::string name = layout_name(info.swizzle);
-    job.remark(guess_text(name), path);
-    const std::lock_guard lock(mutex_);
-    Guesses& guesses = guesses_[name];
-    // Files that are read in parallel arrive in any order. The alphabetically first one is named.
-    if (guesses.count++ == 0 || path < guesses.first) guesses.first = path;
+    return true;
 }
 
 // Says which channels an output lacks.

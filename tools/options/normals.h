@@ -4,8 +4,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +11,9 @@
 #include <tex/file.h>
 
 #include "cli/command.h"
+#include "options/input_kind.h"
 #include "tasks/job.h"
+#include "tasks/repeated_warnings.h"
 
 namespace tex::cli {
 
@@ -50,7 +50,8 @@ void add_length_in(Command& command, std::optional<LengthIn>& length_in);
 
 // What --y-in and --detail-y-in say: a direction of green, or that the texels show it.
 struct YIn {
-    std::optional<YAxis> axis;  // none: measured
+    std::optional<YAxis> axis;       // none: measured
+    std::optional<YAxis> otherwise;  // what it is if the texels do not show it clearly; none: that is an error
 };
 
 // An option whose value becomes a YIn, which `set` gets.
@@ -77,7 +78,8 @@ public:
     std::optional<Bc5Order> bc5_order;
     UnpackOptions unpack;
     std::optional<LengthIn> length_in;
-    bool measures_y = false;  // the texels show which way green points
+    bool measures_y = false;           // the texels show which way green points
+    std::optional<YAxis> y_otherwise;  // as YIn::otherwise
     bool fills_background = false;
     bool warns_of_background = true;  // where the output may mix it into the charts
     bool drops_others = false;        // channels that hold no normals are left out, and no warning says so
@@ -88,6 +90,12 @@ public:
 
     // The same, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
+
+    // What the file is, if the texels that were read raise a doubt about it.
+    [[nodiscard]] std::optional<JudgedPicture> judged(const Job& job, const std::string& path,
+                                                      const SourceInfo& info) const;
+    // An error if it is no normal map.
+    [[nodiscard]] Result<void> accept(const Job& job, const std::string& path, const SourceInfo& info) const;
 
     // Prints the remarks about `path` as warnings, and counts guesses. Any thread may call this.
     void note(Job& job, const std::string& path, const SourceInfo& info);
@@ -100,19 +108,15 @@ public:
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
 
     // Prints a warning for each layout that was guessed from texels, with the first of its files.
-    void warn_of_guesses(Console& console) const;
+    void warn_of_guesses(Console& console) const { guesses_.print(console); }
 
 private:
-    struct Guesses {
-        std::string first;  // the first file
-        int count = 0;
-    };
-
+    // Warns of what seems to be something else than normals. Returns false if it is no normal map at all.
+    bool warn_of_kind(Job& job, const std::string& path, const SourceInfo& info) const;
     void warn_of_others(Job& job, const std::string& path, const SourceInfo& info) const;
 
     bool keeps_others_ = false;
-    std::mutex mutex_;
-    std::map<std::string, Guesses> guesses_;  // by the name of the swizzle
+    RepeatedWarnings guesses_;
 };
 
 }  // namespace tex::cli

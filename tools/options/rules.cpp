@@ -83,6 +83,14 @@ void RuleOptions::add(Command& command) {
     command.text(config_, "--config", "FILE", "read requirements, rules and severities from a TOML file")
         .often(1, "read requirements and rules from a TOML file")
         .completes = Completes::files;
+    Row& root =
+        command.text(root_, "--root", "DIR", "the folder that patterns in the file of --config are relative to");
+    root.completes = Completes::directories;
+    root.preset = "that of the file";
+    command.check([this] {
+        if (!root_.empty() && config_.empty())
+            throw UsageError("--root needs --config, whose patterns are relative to it");
+    });
     command
         .choice(least_failing_, "--fail-on", "SEVERITY", kSeverityNames,
                 "the lowest severity that makes the command fail (exit 1)")
@@ -131,12 +139,33 @@ Result<void> RuleOptions::merge_config(const Command& command) {
     return {};
 }
 
-const Demands& RuleOptions::demands_of(const std::string& path) const {
-    if (file_rules_.empty() || path == "-") return demands_;
-    const auto name = path_below(slashed(std::filesystem::path(config_).parent_path()), path);
+std::size_t RuleOptions::rule_of(const std::string& path) const {
+    if (file_rules_.empty() || path == "-") return file_rules_.size();
+    const auto name = path_below(root_.empty() ? slashed(std::filesystem::path(config_).parent_path()) : root_, path);
     const auto rule = std::find_if(file_rules_.begin(), file_rules_.end(),
                                    [&](const CheckRule& candidate) { return name && candidate.takes(*name); });
-    return rule == file_rules_.end() ? demands_ : of_rules_[static_cast<std::size_t>(rule - file_rules_.begin())];
+    return static_cast<std::size_t>(rule - file_rules_.begin());
+}
+
+const Demands& RuleOptions::demands_of(const std::string& path) const {
+    const std::size_t rule = rule_of(path);
+    return rule < of_rules_.size() ? of_rules_[rule] : demands_;
+}
+
+std::vector<std::string> RuleOptions::idle_rules(const std::vector<Task>& tasks) const {
+    std::vector<std::string> sentences;
+    std::vector<bool> used(file_rules_.size() + 1);
+    for (const Task& task : tasks) used[rule_of(task.input)] = true;
+    for (std::size_t k = 0; k < file_rules_.size(); ++k) {
+        if (used[k]) continue;
+        std::vector<std::string> patterns;
+        for (const Glob& glob : file_rules_[k].match) patterns.push_back(printable(glob.text()));
+        sentences.push_back(fmt::format(
+            "{}: line {}: no file that is checked is of this rule ({}), which is relative to {}", printable(config_),
+            file_rules_[k].line, join(patterns, ", "),
+            root_.empty() ? "the folder of the configuration; --root names another" : "--root " + printable(root_)));
+    }
+    return sentences;
 }
 
 Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read) {

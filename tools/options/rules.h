@@ -26,8 +26,8 @@ struct Demands {
     [[nodiscard]] bool fails(const Finding& finding) const { return finding.severity >= fail_on; }
 };
 
-// --require, --for, --swizzle, --length-in, --enable, --disable, --severity, --config, --fail-on, --height, --list,
-// --explain.
+// --require, --for, --swizzle, --length-in, --enable, --disable, --severity, --config, --root, --fail-on, --height,
+// --list, --explain.
 class RuleOptions {
 public:
     void add(Command& command);
@@ -46,8 +46,12 @@ public:
     [[nodiscard]] const Demands& demands() const { return demands_; }
     // The demands on the file `path`.
     [[nodiscard]] const Demands& demands_of(const std::string& path) const;
+    // A sentence for each rule of the configuration that matches none of these files. Valid after read().
+    [[nodiscard]] std::vector<std::string> idle_rules(const std::vector<Task>& tasks) const;
 
 private:
+    // The place in file_rules_ of the rule for the file `path`; their number if there is none.
+    [[nodiscard]] std::size_t rule_of(const std::string& path) const;
     [[nodiscard]] Result<void> merge_config(const Command& command);
     [[nodiscard]] Demands merged(const CheckSettings& settings, const Command& command) const;
 
@@ -57,7 +61,8 @@ private:
     std::optional<LengthIn> length_in_;
     std::optional<std::optional<Swizzle>> swizzle_;  // --swizzle; of "auto", nothing
     std::string config_, height_file_;               // paths, or empty
-    Severity least_failing_ = Severity::error;       // --fail-on
+    std::string root_;                          // that patterns of the configuration are relative to; empty: its folder
+    Severity least_failing_ = Severity::error;  // --fail-on
     bool list_ = false;
     const Rule* explain_ = nullptr;
 

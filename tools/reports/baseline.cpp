@@ -13,6 +13,7 @@
 #include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
+#include "files/path_names.h"
 
 namespace tex::cli {
 namespace {
@@ -104,13 +105,28 @@ void Baseline::add(const CheckReport& report, const std::string& content) {
         insert({name_of(report), std::string(finding.rule->id), level_of(finding), content_with_map(report, content)});
 }
 
-std::vector<Finding> Baseline::accept(CheckReport& report, const std::string& content) const {
+std::size_t Baseline::gone() const {
+    const auto is_gone = [this](const Entry& entry) {
+        const auto& [file, id, level, content] = entry;
+        if (matched_.count({file, id, level}) > 0 || (!content.empty() && matched_.count({content, id, level}) > 0))
+            return false;
+        return seen_.count(file) > 0 || !status_of(slashed(folder_ / file.substr(0, file.find(": "))));
+    };
+    return static_cast<std::size_t>(std::count_if(entries_.begin(), entries_.end(), is_gone));
+}
+
+std::vector<Finding> Baseline::accept(CheckReport& report, const std::string& content) {
     if (report.error) return {};
     const std::string file = name_of(report), with_map = content_with_map(report, content);
+    seen_.insert(file);
     const auto is_known = [&](const Finding& finding) {
         const std::string id(finding.rule->id);
         const int level = level_of(finding);
-        return by_file_.count({file, id, level}) > 0 || by_content_.count({with_map, id, level}) > 0;
+        const bool by_file = by_file_.count({file, id, level}) > 0,
+                   by_content = by_content_.count({with_map, id, level}) > 0;
+        if (by_file) matched_.emplace(file, id, level);
+        if (by_content) matched_.emplace(with_map, id, level);
+        return by_file || by_content;
     };
     const auto known = std::stable_partition(report.findings.begin(), report.findings.end(),
                                              [&](const Finding& finding) { return !is_known(finding); });

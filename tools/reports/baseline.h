@@ -38,8 +38,13 @@ public:
     // file, or empty.
     void add(const CheckReport& report, const std::string& content);
     // Removes known findings from the report, and returns them. Those of a file that cannot be read are never known.
-    [[nodiscard]] std::vector<Finding> accept(CheckReport& report, const std::string& content) const;
+    [[nodiscard]] std::vector<Finding> accept(CheckReport& report, const std::string& content);
     [[nodiscard]] std::string text() const;
+
+    // The findings that it lists, and those of them that are gone: accept() was called for their file, or there is no
+    // such file, and nothing matched them.
+    [[nodiscard]] std::size_t size() const { return entries_.size(); }
+    [[nodiscard]] std::size_t gone() const;
 
 private:
     using Key = std::tuple<std::string, std::string, int>;                 // file or content, id, level
@@ -52,6 +57,8 @@ private:
     std::filesystem::path folder_;  // that files are relative to; empty: files are as given
     std::set<Entry> entries_;
     std::set<Key> by_file_, by_content_;
+    std::set<std::string> seen_;  // files
+    std::set<Key> matched_;       // of both kinds
 };
 
 }  // namespace tex::cli

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tex/file.h>
 
+#include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "reports/findings.h"
@@ -78,7 +80,9 @@ std::vector<Finding> CheckDocuments::accept(CheckReport& report) {
         const std::lock_guard lock(mutex_);
         new_baseline_.add(report, content);  // includes findings that --baseline accepts
     }
-    return baseline_ ? baseline_->accept(report, content) : std::vector<Finding>();
+    if (!baseline_) return {};
+    const std::lock_guard lock(mutex_);
+    return baseline_->accept(report, content);
 }
 
 Result<void> CheckDocuments::add(Job& job, const JudgedReport& judged, const MapOnMesh* mesh, const ReadTexture& read) {
@@ -117,7 +121,16 @@ Result<void> CheckDocuments::add_to_page(Job& job, const JudgedReport& judged, c
     return {};
 }
 
+void CheckDocuments::note_gone(Console& console) const {
+    const std::size_t gone = baseline_ ? baseline_->gone() : 0;
+    if (gone == 0 || writes_baseline()) return;
+    console.warning(
+        fmt::format("{}: {} of {} findings are gone; --baseline-write {}, in a run over all files, drops them",
+                    printable(baseline_path_), gone, baseline_->size(), shell_file(baseline_path_)));
+}
+
 ExitCode CheckDocuments::write(Console& console, const std::string& summary) const {
+    note_gone(console);
     std::vector<JudgedReport> all;
     for (const auto& [file, report] : reports_) all.push_back(report);
     ExitCode code = ExitCode::done;

@@ -58,6 +58,8 @@ public:
     [[nodiscard]] ExitCode write(Console& console, const std::string& summary) const;
 
 private:
+    // Warns of findings of the baseline that nothing matches any more.
+    void note_gone(Console& console) const;
     [[nodiscard]] std::vector<std::string> written() const;
     [[nodiscard]] Result<void> add_to_page(Job& job, const JudgedReport& judged, const MapOnMesh* mesh,
                                            const ReadTexture& read);

@@ -68,6 +68,13 @@ std::string pair_text(const CheckReport& report) {
                        pair.offset_y);
 }
 
+std::string y_text(const CheckReport& report) {
+    if (report.error) return {};
+    const std::string words = report.y.y ? fmt::format("green points {}", name_of_y(*report.y.y))
+                                         : std::string("which way green points does not show");
+    return fmt::format("{}: {}\n", printable(title_of(report)), words);
+}
+
 std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
@@ -170,6 +177,10 @@ std::string CheckTotals::text() const {
                                    count(by_severity[1], "warning"), count(by_severity[0], "note"));
     if (unreadable > 0) line += fmt::format("; {} unreadable", unreadable);
     if (known > 0) line += fmt::format("; {} known and accepted", known);
+    if (left_out > 0)
+        line += fmt::format("; {} left out, which {} no picture{}", count(static_cast<int>(left_out), "file"),
+                            left_out == 1 ? "is" : "are", left_out == 1 ? "" : "s");
+    if (!fails && by_severity[2] == 0 && by_severity[1] > 0) line += "; warnings pass, --fail-on warning refuses them";
     return line;
 }
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <tex/check.h>
@@ -24,6 +25,9 @@ namespace tex::cli {
 // The result of the comparison with the height map, even if it is not a finding; empty if there is no height map.
 [[nodiscard]] std::string pair_text(const CheckReport& report);
 
+// Which way green points in the map, as the texels show.
+[[nodiscard]] std::string y_text(const CheckReport& report);
+
 // How well the map fits its mesh, even if it is not a finding; empty if there is no mesh or no seam.
 [[nodiscard]] std::string seams_text(const CheckReport& report);
 
@@ -38,6 +42,8 @@ namespace tex::cli {
 struct CheckTotals {
     int files = 0, unreadable = 0, known = 0;
     int by_severity[3] = {};
+    bool fails = false;         // a finding makes the command fail
+    std::int64_t left_out = 0;  // files of folders that are no pictures
 
     // `its_known`: the number of findings that a baseline removed from the report. Files are counted by the caller.
     void add(const CheckReport& report, int its_known);

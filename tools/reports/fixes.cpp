@@ -144,6 +144,10 @@ std::optional<Target> target_of(std::string_view id, const CheckReport& report, 
         grey ? encoding_of_heights(report.format) : same_encoding(report.format, swizzle);
     if (id == "N108" || (encoding && require.encoding)) encoding = require.encoding;
     if (id == "N208" && encoding) encoding = Encoding::half;
+    // Blocks of colours and alpha are not written; 8 bits hold all that they do.
+    const FormatInfo format = format_info(report.format);
+    if (!encoding && report.more_data && format.has_blocks() && format.sample == SampleKind::unorm)
+        encoding = Encoding::rgba8;
     if (!encoding) return std::nullopt;
     if (report.more_data) {
         encoding = with_alpha(*encoding);

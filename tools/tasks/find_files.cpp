@@ -2,6 +2,8 @@
 
 #include "tasks/find_files.h"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -12,7 +14,51 @@ namespace {
 
 constexpr const char* kWildcards = "*?[{";
 
+// Of files that may hold normals, without their dot.
+constexpr std::string_view kPictureExtensions[] = {"dds", "ktx2", "ktx", "astc", "png", "exr", "tga",  "bmp",
+                                                   "jpg", "jpeg", "tif", "tiff", "hdr", "psd", "webp", "jp2",
+                                                   "gif", "dpx",  "sgi", "tx",   "glb", "gltf"};
+
+bool is_picture(const std::string& path) {
+    const std::size_t dot = path.rfind('.');
+    if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return false;
+    std::string extension = path.substr(dot + 1);
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return std::find(std::begin(kPictureExtensions), std::end(kPictureExtensions), extension) !=
+           std::end(kPictureExtensions);
+}
+
+bool is_hidden(std::string_view path) {
+    while (path.ends_with('/')) path.remove_suffix(1);
+    const std::size_t slash = path.rfind('/');
+    return path.substr(slash == std::string_view::npos ? 0 : slash + 1).starts_with('.');
+}
+
 }  // namespace
+
+Result<FolderPictures> pictures_below(const std::string& folder) {
+    const Glob all("**");
+    std::optional<Error> failed;
+    FileSearch search;
+    search.globs = {&all};
+    search.skip = [](const std::string& path) { return is_hidden(path); };
+    search.unreadable = [&](const std::string& path, const std::string& reason) {
+        if (!failed) failed = Error{ErrorCode::io, path, "cannot be read: " + reason};
+    };
+    FolderPictures found;
+    const std::string before = folder == "." ? "" : folder.ends_with('/') ? folder : folder + "/";
+    for (const FoundFile& file : find_files(folder == "." ? "" : folder, search)) {
+        if (is_hidden(file.path)) continue;
+        if (is_picture(file.path))
+            found.files.push_back(before + file.path);
+        else
+            ++found.others;
+    }
+    if (failed) return *failed;
+    if (found.files.empty())
+        return Error{ErrorCode::io, folder, "no file in this folder is a picture, by its extension"};
+    return found;
+}
 
 bool is_pattern(const std::string& name) {
     const std::size_t first = name.find_first_of(kWildcards);

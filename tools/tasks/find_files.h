@@ -43,4 +43,14 @@ struct FileSearch {
 // none, or a folder cannot be read. Throws UsageError, as Glob.
 [[nodiscard]] Result<std::vector<std::string>> files_matching(const std::string& pattern);
 
+// The pictures and glTF models in a folder and those below it, by their extensions, and the number of other files.
+struct FolderPictures {
+    std::vector<std::string> files;
+    std::int64_t others = 0;
+};
+
+// Files and folders whose names begin with a dot are not looked at. Errors: io: there is none, or a folder cannot be
+// read.
+[[nodiscard]] Result<FolderPictures> pictures_below(const std::string& folder);
+
 }  // namespace tex::cli

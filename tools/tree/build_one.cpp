@@ -50,6 +50,22 @@ Error BuildRun::with_remedy(const Error& error, const std::string& output) const
     return {error.code, error.file, error.reason + "; make it writable (chmod u+w, p4 edit) or remove it"};
 }
 
+// Whether the check of inputs finds an error in the input.
+Result<bool> BuildRun::refuses_input(const BuildTask& task, Outcome& outcome) {
+    const Recipe& recipe = recipes_[task.recipe];
+    if (!recipe.reads_normals()) return false;
+    const Execution execution{running_.threads, [this](double) { return !stopped(); }};
+    const auto findings = recipe.check().findings_of_input(contents_.path(task.input), running_.read, execution);
+    if (!findings) return findings.error();
+    for (const std::string& sentence : *findings) {
+        console_.error(fmt::format("{} ({}): {}", printable(task.input), recipe.place_text(), sentence));
+        outcome.report["findings"].push_back({{"input", task.input}, {"message", sentence}});
+    }
+    if (findings->empty()) return false;
+    outcome.code = ExitCode::findings;
+    return true;
+}
+
 Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& stale, const WriteOptions& write,
                             double& counted, Outcome& outcome) {
     const Recipe& recipe = recipes_[task.recipe];
@@ -72,17 +88,25 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     if (recipe.check().compares()) settings.source = in_memory();
     if (!std::all_of(waiting.begin(), waiting.end(), [](const CheckedFile& file) { return file.is_open(); }))
         return Error{ErrorCode::out_of_memory, {}, system_reason(errno)};
+    settings.takes_any = !recipe.check().refuses_inputs();
+    if (recipe.check().checks_inputs()) {
+        const auto refused = refuses_input(task, outcome);
+        if (!refused) return refused.error();
+        if (*refused) return Made();
+    }
     Result<Made> made = make_texture(recipe, contents_.path(task.input), wanted, settings, console_);
     if (!made) return with_remedy(made.error(), wanted.front().path);
     if (!is_checked) return made;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-        const MadeTexture texture{wanted[k].write_to, settings.source, made->packs[k], task.outputs[wanted[k].index]};
+        const MadeTexture texture{wanted[k].write_to, settings.source, made->packs[k], task.outputs[wanted[k].index],
+                                  contents_.path(task.input)};
         const Execution execution{running_.threads, [this](double) { return !stopped(); }};
         const auto findings = recipe.check().findings(texture, running_.read, execution);
         if (!findings) return findings.error();
         for (const std::string& sentence : *findings) {
             outcome.code = ExitCode::findings;
-            console_.error(fmt::format("{}: {}", texture.name, sentence));
+            console_.error(fmt::format("{}, made from {} ({}): {}", printable(texture.name), printable(task.input),
+                                       recipe.place_text(), sentence));
             outcome.report["findings"].push_back({{"output", texture.name}, {"message", sentence}});
         }
     }

@@ -15,6 +15,7 @@
 #include "options/toml.h"
 #include "options/toml_bounds.h"
 #include "tasks/grid.h"
+#include "tree/beside.h"
 
 namespace tex::cli {
 namespace {
@@ -117,6 +118,10 @@ std::vector<std::string> ManifestReader::patterns_of(const toml::node& node, con
     const auto add = [&](const toml::node& item) {
         patterns.push_back(string_of(item, what));
         try {
+            if (what == "unless") {
+                check_beside(patterns.back());
+                return;
+            }
             const Glob checked(what == "match" && has_grid(patterns.back()) ? grid_glob(patterns.back())
                                                                             : patterns.back());
         } catch (const UsageError& error) {
@@ -232,7 +237,7 @@ void ManifestReader::read_defaults(const toml::table& table) {
 }
 
 RuleSettings ManifestReader::rule_of(const toml::table& table) const {
-    check_keys(table, {"match", "exclude", "name", "out-dir", "steps", "outputs", "check"});
+    check_keys(table, {"match", "exclude", "unless", "name", "out-dir", "steps", "outputs", "check"});
     RuleSettings rule;
     rule.place = place_of(table.source());
     const toml::node* match = table.get("match");
@@ -240,6 +245,7 @@ RuleSettings ManifestReader::rule_of(const toml::table& table) const {
     rule.match = patterns_of(*match, "match");
     if (rule.match.empty()) fail(*match, "match is an empty list");
     if (const toml::node* node = table.get("exclude")) rule.exclude = patterns_of(*node, "exclude");
+    if (const toml::node* node = table.get("unless")) rule.unless = patterns_of(*node, "unless");
     rule.out_dir = defaults_.out_dir;
     if (const toml::node* node = table.get("out-dir")) rule.out_dir = folder_of(*node);
     const toml::node* steps = table.get("steps");

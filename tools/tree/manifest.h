@@ -47,6 +47,7 @@ struct OutputSettings {
 struct RuleSettings {
     std::vector<std::string> match;
     std::vector<std::string> exclude;
+    std::vector<std::string> unless;  // see beside.h
     std::string out_dir;
     std::vector<StepSettings> steps;
     std::vector<OutputSettings> outputs;

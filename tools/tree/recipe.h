@@ -18,6 +18,7 @@
 #include "cli/console.h"
 #include "cli/glob.h"
 #include "cli/programs.h"
+#include "cli/text.h"
 #include "tasks/name_pattern.h"
 #include "tree/changes.h"
 #include "tree/manifest.h"
@@ -115,6 +116,12 @@ public:
                                                                 const std::string& file) const;
 
     [[nodiscard]] const TextureCheck& check() const { return *check_; }
+    // Whether the inputs are normal maps.
+    [[nodiscard]] bool reads_normals() const;
+    // Where the rule stands: "build.toml, line 7".
+    [[nodiscard]] std::string place_text() const {
+        return printable(manifest_.path) + ", line " + std::to_string(rule_.place.line);
+    }
 
     // The files that options name and every output depends on, relative to the root.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }

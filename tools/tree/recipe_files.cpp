@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "files/path_names.h"
@@ -59,6 +60,11 @@ std::vector<std::string> OutputFiles::all() const {
     }
     names.insert(names.end(), files.begin(), files.end());
     return names;
+}
+
+bool Recipe::reads_normals() const {
+    const Converter* const first = (before_.empty() ? outputs_.front().last : before_.front()).converter;
+    return dynamic_cast<const NormalsConverter*>(first) != nullptr;
 }
 
 std::string Recipe::below_root(const std::string& file) const {

@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "reports/fixes.h"
 
 namespace tex::cli {
 namespace {
@@ -24,17 +25,25 @@ bool is_key(const Row& row) {
 }  // namespace
 
 TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, Console& console)
-    : command_("check", ""), is_given_(!settings.empty()) {
+    : command_("check", "") {
     rules_.add(command_);
     limits_.add(command_);
     std::vector<std::string> known, arguments;
     for (const Row& row : command_.rows()) {
         if (is_key(row)) known.push_back(row.name().substr(2));
     }
+    known.emplace_back("inputs");
     for (const OptionSetting& setting : settings) {
         const auto fail = [&](const std::string& reason) {
             fail_at(manifest.path, setting.place, fmt::format("check: {}{}", printable(setting.key), reason));
         };
+        if (setting.key == "inputs") {
+            if (!setting.is_flag) fail(" must be true or false");
+            inputs_ = setting.is_on;
+            if (setting.is_on) text_ += "check inputs\n";
+            continue;
+        }
+        is_given_ = true;
         if (std::find(known.begin(), known.end(), setting.key) == known.end())
             fail(" is no key of a check" + did_you_mean(setting.key, known));
         if (setting.is_flag) fail(" needs a value");
@@ -73,6 +82,38 @@ Result<void> TextureCheck::compare_with_source(const MadeTexture& made, const Re
     return {};
 }
 
+// "... of the texels are background, first at column 3, row 9 (background, N215); ..."
+std::string TextureCheck::sentence_of(const Finding& finding, const CheckReport& report,
+                                      const std::string& input) const {
+    std::string sentence = finding.message;
+    if (finding.has_texel) sentence += fmt::format(", first at column {}, row {}", finding.column, finding.row);
+    sentence += fmt::format(" ({}, {})", finding.rule->name, finding.rule->id);
+    CheckReport of_input = report;
+    of_input.file = input;
+    Fix fix = fix_of(finding, of_input, rules_.demands().checks.require);
+    if (fix.text.empty()) return sentence;
+    if (input == report.file) return sentence + "; " + fix.text;
+    // What the file is like, and its levels, the rule of the manifest decides.
+    if (finding.rule->family == RuleFamily::file || finding.rule->family == RuleFamily::mips)
+        return sentence + "; the rule decides that" +
+               (fix.is_command ? ", as the options of this do: " + fix.text : "");
+    return sentence + (fix.is_command ? "; if the input has that fault, too, this mends it: " : "; ") + fix.text;
+}
+
+Result<std::vector<std::string>> TextureCheck::findings_of_input(const std::string& path, const ReadOptions& read,
+                                                                 const Execution& execution) const {
+    CheckOptions checks = rules_.demands().checks;
+    checks.require = {};
+    const auto report = check_file(path, checks, read, execution);
+    if (!report) return report.error();
+    if (report->error) return *report->error;
+    std::vector<std::string> sentences;
+    for (const Finding& finding : report->findings) {
+        if (rules_.demands().fails(finding)) sentences.push_back(sentence_of(finding, *report, path));
+    }
+    return sentences;
+}
+
 Result<std::vector<std::string>> TextureCheck::findings(const MadeTexture& made, const ReadOptions& read,
                                                         const Execution& execution) const {
     std::vector<std::string> sentences;
@@ -80,8 +121,7 @@ Result<std::vector<std::string>> TextureCheck::findings(const MadeTexture& made,
     if (!report) return report.error();
     if (report->error) return *report->error;
     for (const Finding& finding : report->findings) {
-        if (rules_.demands().fails(finding))
-            sentences.push_back(fmt::format("{} ({})", finding.message, finding.rule->name));
+        if (rules_.demands().fails(finding)) sentences.push_back(sentence_of(finding, *report, made.input));
     }
     if (compares_) {
         if (const auto done = compare_with_source(made, read, execution, sentences); !done) return done.error();

@@ -4,9 +4,11 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <tex/check.h>
 #include <tex/pack.h>
 
 #include "cli/command.h"
@@ -21,17 +23,22 @@ struct MadeTexture {
     std::string file;
     std::string source;  // the normals before packing, as an EXR file; empty if no limit is set
     PackOptions pack;
-    std::string name;  // for messages
+    std::string name;   // for messages
+    std::string input;  // from which it was made
 };
 
 class TextureCheck {
 public:
-    // The keys of `settings` are options of check-normals (require, enable, disable, severity, fail-on) and of
-    // compare-normals (max-mean, max-p999, max). Throws UsageError with the place in the manifest.
+    // The key "inputs" says whether the inputs are checked, too. The other keys of `settings` are options of
+    // check-normals (require, enable, disable, severity, fail-on) and of compare-normals (max-mean, max-p999, max).
+    // Throws UsageError with the place in the manifest.
     TextureCheck(const Manifest& manifest, const Settings& settings, Console& console);
     TextureCheck(const TextureCheck&) = delete;
     TextureCheck& operator=(const TextureCheck&) = delete;
 
+    // Whether inputs that hold something else than their rule takes are refused, and whether all rules judge inputs.
+    [[nodiscard]] bool refuses_inputs() const { return !inputs_ || *inputs_; }
+    [[nodiscard]] bool checks_inputs() const { return inputs_ && *inputs_; }
     [[nodiscard]] bool is_given() const { return is_given_; }
     [[nodiscard]] bool compares() const { return compares_; }
     // What outputs depend on: the same settings give the same text.
@@ -41,7 +48,13 @@ public:
     [[nodiscard]] Result<std::vector<std::string>> findings(const MadeTexture& made, const ReadOptions& read,
                                                             const Execution& execution) const;
 
+    // The same, for a normal map that is an input, at `path`. Requirements are those of outputs.
+    [[nodiscard]] Result<std::vector<std::string>> findings_of_input(const std::string& path, const ReadOptions& read,
+                                                                     const Execution& execution) const;
+
 private:
+    [[nodiscard]] std::string sentence_of(const Finding& finding, const CheckReport& report,
+                                          const std::string& input) const;
     [[nodiscard]] Result<void> compare_with_source(const MadeTexture& made, const ReadOptions& read,
                                                    const Execution& execution,
                                                    std::vector<std::string>& sentences) const;
@@ -49,6 +62,7 @@ private:
     Command command_;
     RuleOptions rules_;
     PairOptions limits_;
+    std::optional<bool> inputs_;
     bool is_given_ = false;
     bool compares_ = false;
     std::string text_;

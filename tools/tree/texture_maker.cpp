@@ -143,9 +143,18 @@ Result<void> run_command(Converter& converter, Job& job, std::vector<std::string
     return {};
 }
 
+// An error if the command refuses the input.
+Result<void> accept_input(const Converter& converter, const std::string& input, const MakeSettings& settings, Jobs& jobs) {
+    if (settings.takes_any) return {};
+    return converter.accept(jobs.add(Task{input, {}}));
+}
+
 // Commands that are no steps make their outputs one after the other.
 Result<Made> run_commands(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,
-                          Jobs& jobs) {
+                          const MakeSettings& settings, Jobs& jobs) {
+    if (auto accepted = accept_input(*recipe.outputs()[wanted.front().index].last.converter, input, settings, jobs);
+        !accepted)
+        return accepted.error();
     Made made;
     for (const WantedOutput& output : wanted) {
         std::vector<std::string>& files = made.files.emplace_back();
@@ -168,6 +177,10 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
     const std::string between = "between.exr";
     std::vector<Step> steps;
     std::string from = input;
+    if (!recipe.before().empty()) {
+        const Converter& reader = *recipe.before().front().converter;
+        if (auto accepted = accept_input(reader, input, settings, jobs); !accepted) return accepted.error();
+    }
     for (const ReadyCommand& command : recipe.before()) {
         steps.push_back(*command.converter->step(jobs.add(command.converter->task_for(from, between, input))));
         from = between;
@@ -190,8 +203,9 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
         if (!output.write_to.empty()) task.output = output.write_to;
         Job& job = jobs.add(std::move(task));
         std::optional<Step> step = converter.step(job);
-        if (!step) return run_commands(recipe, input, wanted, jobs);
+        if (!step) return run_commands(recipe, input, wanted, settings, jobs);
         redirect(*step, output.further);
+        if (!settings.takes_any && recipe.before().empty()) converter.add_accept(*step, job);
         endings.push_back({std::move(*step), &job.task});
     }
     const auto has_fewer = [](const Ending& a, const Ending& b) {
@@ -224,6 +238,11 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
         return reader.with_remedy(done.error());
     }
     note(recipe, output, input, *done, jobs);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        const int levels = std::get_if<PackFileOptions>(&steps.back()) == nullptr ? 0 : done->levels;
+        recipe.outputs()[wanted[k].index].last.converter->note_output(
+            jobs.add(*tasks[k]), {done->extent, levels, done->left_out > 0, packs[k].encoding}, wanted[k].path);
+    }
     Made made;
     made.report = std::move(*done);
     made.packs = std::move(packs);

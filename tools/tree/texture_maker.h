@@ -24,6 +24,7 @@ struct MakeSettings {
     std::function<bool(double fraction)> advance;  // returns false if the work must stop
     std::string source = {};                       // if not empty, the normals before packing go here, as EXR
     std::shared_ptr<SharedMaps> shared = {};       // as Job::shared_maps
+    bool takes_any = false;                        // inputs that are not what the commands take are not refused
 };
 
 // What was made.

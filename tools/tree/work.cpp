@@ -14,6 +14,7 @@
 #include "files/path_names.h"
 #include "tasks/file_table.h"
 #include "tasks/name_pattern.h"
+#include "tree/beside.h"
 #include "tree/state.h"
 
 namespace tex::cli {
@@ -58,6 +59,7 @@ public:
 
 private:
     void find_inputs();
+    bool is_left_alone(const Recipe& recipe, const std::string& input);
     void find_collisions();
     std::vector<std::string> files_of(std::size_t index, std::size_t output);
     void refuse(std::size_t index, std::size_t earlier, const char* what, const std::string& output);
@@ -68,10 +70,29 @@ private:
     const std::string& root_;
     const FolderVisitor& entered_;
     WorkList work_;
+    FilesBeside beside_{root_};
     std::unordered_map<std::string, std::size_t> makers_;  // the task that makes an output
     std::vector<std::set<std::size_t>> needed_;            // the recipes that each recipe needs
     std::set<std::size_t> checked_;                        // recipes that need no cycle
 };
+
+// Whether a file beside the input does, which no rule makes, as the rule's unless says. Outputs that lie there would
+// end what makes them.
+bool Lister::is_left_alone(const Recipe& recipe, const std::string& input) {
+    std::vector<std::string> made;
+    for (const Recipe& other : recipes_) {
+        if (recipe.rule().unless.empty() || !other.takes(input)) continue;
+        for (std::size_t k = 0; k < other.outputs().size(); ++k) {
+            try {
+                const OutputFiles files = other.files_of(input, k);
+                made.insert(made.end(), files.files.begin(), files.files.end());
+            } catch (const UsageError&) {  // refused later
+            }
+        }
+    }
+    return std::any_of(recipe.rule().unless.begin(), recipe.rule().unless.end(),
+                       [&](const std::string& pattern) { return beside_.has(pattern, input, made); });
+}
 
 void Lister::find_inputs() {
     const std::vector<std::string> folders = output_folders(recipes_);
@@ -87,8 +108,9 @@ void Lister::find_inputs() {
         work_.unreadable.push_back(folder + ": " + reason);
     };
     for (FoundFile& file : find_files(root_, search)) {
-        const auto recipe = std::find_if(recipes_.begin(), recipes_.end(),
-                                         [&](const Recipe& candidate) { return candidate.takes(file.path); });
+        const auto recipe = std::find_if(recipes_.begin(), recipes_.end(), [&](const Recipe& candidate) {
+            return candidate.takes(file.path) && !is_left_alone(candidate, file.path);
+        });
         if (recipe == recipes_.end()) continue;
         BuildTask task;
         task.recipe = static_cast<std::size_t>(recipe - recipes_.begin());

@@ -275,6 +275,7 @@ struct SourceOptions {
                                    // left out, and the base level is held in memory
     bool measure_y = false;     // the texels of the base level decide about y, whatever the file or unpack.y_axis state
     bool file_y_first = false;  // the direction that a file states takes precedence over unpack.y_axis
+    std::optional<YAxis> y_otherwise;  // what y is if it is to be measured, and does not show clearly; none: an error
 
     friend bool operator==(const SourceOptions&, const SourceOptions&) = default;
 };

@@ -113,6 +113,9 @@ struct BakeFileOptions {
     std::vector<MoreFile> more;  // appear after `output`, in this order
     OtherInputs others;          // every output must have room for them
     bool slopes = false;         // whether BakeFileReport::slopes is computed
+
+    // Called when all rows were read, and before any file appears: an error means that none does. Must not throw.
+    std::function<Result<void>(const HeightReport&)> accept;
 };
 
 // Whether every option is in its range. bake_file() calls it first. Errors: bad_option, which names the option.
@@ -121,6 +124,7 @@ struct BakeFileOptions {
 struct BakeFileReport {
     Extent extent;  // of the base level
     int levels = 1;
+    int left_out = 0;  // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
     Strength strength;              // with which it was baked
@@ -202,6 +206,8 @@ struct PackFileOptions {
     OtherInputs others;
     // Appear after the files of normals. What goes into length_file is no longer in the lengths of the normals.
     std::optional<OtherFile> blue_file, alpha_file, length_file;
+
+    std::function<Result<void>(const SourceInfo&)> accept;  // as in BakeFileOptions
 };
 
 // Whether every option is in its range. pack_file() calls it first. Errors: bad_option, which names the option.
@@ -210,6 +216,7 @@ struct PackFileOptions {
 struct PackFileReport {
     Extent extent;  // of the base level that was written
     int levels = 1;
+    int left_out = 0;  // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     std::size_t roughness_bytes = 0;
     Format roughness_format = Format::bc4_unorm;  // if a roughness file was written
@@ -280,6 +287,8 @@ struct BlendFileOptions {
     OtherInputs others;          // as in PackFileOptions; without them, those of the base go along
 
     std::shared_ptr<SharedMaps> shared;  // where the maps of the layers are kept; null: nowhere
+
+    std::function<Result<void>(const SourceInfo& base)> accept;  // as in BakeFileOptions
 };
 
 // Whether every option is in its range. blend_file() calls it first. Errors: bad_option, which names the option.
@@ -288,6 +297,7 @@ struct BlendFileOptions {
 struct BlendFileReport {
     Extent extent;  // of the base level
     int levels = 1;
+    int left_out = 0;  // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     PackOptions pack;
     SourceInfo source;                // of the base
@@ -328,6 +338,7 @@ struct MapRead {
 struct StepsReport {
     Extent extent;  // of the base level
     int levels = 1;
+    int left_out = 0;  // larger levels, which max_side leaves out
     std::size_t bytes = 0;     // of all outputs
     PackOptions pack;          // of `output`
     HeightReport heights;      // if the first step bakes

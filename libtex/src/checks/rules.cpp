@@ -162,8 +162,9 @@ constexpr Rule kRules[] = {
 
     {"N220", "blue-inverted", values, error, true, "Blue is inverted.",
      "z is below 0 nearly everywhere, while x and y lie about 0, as in tangent space. An exporter or an image editor "
-     "inverted blue. Lit from the front, the surface is black.",
-     "Read the map with --swizzle rg, which rebuilds z, or invert blue in an image editor.",
+     "inverted blue, or the whole picture. Lit from the front, the surface is black.",
+     "Invert in an image editor what was inverted: the picture, or blue alone. If it was blue, --swizzle rg reads the "
+     "map, too, and rebuilds z; if it was the picture, that would make dents of its bumps.",
      "N115 N201 N202 N205 N207 N213 N214 N215 N305 N310 N402"},
     {"N221", "blue-from-zero", values, warning, true, "Blue holds z from 0 to 1.",
      "Vectors are of unit length if z is blue, and not if it is 2 blue - 1. Readers that do not rebuild z get bent "

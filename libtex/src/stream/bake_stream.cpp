@@ -43,6 +43,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     BakeFileReport report;
     const int first = first_level(options.mip, extent);
     report.extent = level_extent(extent, first);
+    report.left_out = first;
     if (any_holds_levels(container, options.level_names, options.more))
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
@@ -69,15 +70,18 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first), given->planes()};
     add_levels(flow, given->add_to(flow, *baked.normals), levels, targets, seen);
     if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
-    if (const Result<void> done = targets.commit(); !done) return done.error();
-    report.bytes = targets.bytes(Content::normals);
-    report.rdo = targets.rdo();
     const auto* const terrain = dynamic_cast<const TerrainRows*>(heights->rows.get());
     HeightCounts counts = heights->counts;
     if (terrain != nullptr) (counts = before) += terrain->counts();
     report.heights = report_of(counts, heights->deband, heights->stored);
     report.heights.remark =
         remark_with_counts(*heights, terrain != nullptr ? terrain->remark() : heights->remark, counts);
+    if (options.accept) {
+        if (const Result<void> accepted = options.accept(report.heights); !accepted) return accepted.error();
+    }
+    if (const Result<void> done = targets.commit(); !done) return done.error();
+    report.bytes = targets.bytes(Content::normals);
+    report.rdo = targets.rdo();
     report.strength = {baked.head.bumpiness_x, baked.head.bumpiness_y};
     report.is_stated = !options.strength && heights->stated;
     report.usual_slope = usual->slope();

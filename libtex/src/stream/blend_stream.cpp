@@ -20,7 +20,7 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     Blending blending(base, options);
     if (const Result<void> opened = blending.open(execution); !opened) return opened.error();
     BlendFileReport report;
-    const int left_out = first_level(options.mip, blending.extent());
+    const int left_out = report.left_out = first_level(options.mip, blending.extent());
     report.extent = level_extent(blending.extent(), left_out);
     const bool holds = any_holds_levels(container, options.level_names, options.more);
     report.levels = holds ? levels_to_build(options.mip, blending.extent()) : 1;
@@ -50,6 +50,9 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     blending.judge(own | (kept & held_by_all(files)) | not_wanted);
     report.source = blending.source();
     report.details = blending.details();
+    if (options.accept) {
+        if (const Result<void> accepted = options.accept(report.source); !accepted) return accepted.error();
+    }
     if (const Result<void> committed = targets.commit(); !committed) return committed.error();
     report.bytes = targets.bytes(Content::normals);
     report.rdo = targets.rdo();

@@ -115,7 +115,7 @@ void MapInspector::report(SourceInfo& info) {
     info.y_doubtful = measures_y_ && !info.object_space && y().y == YAxis::down;
 }
 
-Result<YAxis> measured_y(const YVerdict& verdict) {
+Result<YAxis> measured_y(const YVerdict& verdict, const SourceOptions& options) {
     if (verdict.y) return *verdict.y;
     if (verdict.mixed) {
         return Error{ErrorCode::bad_data,
@@ -124,15 +124,17 @@ Result<YAxis> measured_y(const YVerdict& verdict) {
                          "; no direction is right for all of it, so mend the map first, or say up or down instead of "
                          "measured"};
     }
+    if (options.y_otherwise) return *options.y_otherwise;
     return Error{ErrorCode::bad_data,
                  {},
-                 "which way green points does not show clearly in the texels; say up or down instead of measured"};
+                 "which way green points does not show clearly in the texels; say up or down instead of measured, or "
+                 "\"measured, else up\""};
 }
 
-Result<YAxis> measured_y(const NormalMap& map) {
+Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options) {
     MapInspector inspector(map.extent(), true, Look::as_check);
     for (int j = 0; j < map.extent().height; ++j) inspector.add_row(j, {map.x.row(j), map.y.row(j), map.z.row(j)});
-    return measured_y(inspector.y());
+    return measured_y(inspector.y(), options);
 }
 
 std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info, Extent extent) {

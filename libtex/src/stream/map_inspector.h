@@ -46,9 +46,10 @@ private:
     std::int64_t texels_ = 0, background_ = 0, behind_ = 0;
 };
 
-// Where y of a whole map points, as check() sees it. Errors, without a file: it does not show it, or parts differ.
-[[nodiscard]] Result<YAxis> measured_y(const NormalMap& map);
-[[nodiscard]] Result<YAxis> measured_y(const YVerdict& verdict);
+// Where y of a whole map points, as check() sees it; if that does not show, SourceOptions::y_otherwise. Errors, without
+// a file: it does not show, or parts differ.
+[[nodiscard]] Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options);
+[[nodiscard]] Result<YAxis> measured_y(const YVerdict& verdict, const SourceOptions& options);
 
 // Inspects a whole map as the options say. Precondition: `info` knows whether y is assumed.
 void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& info);

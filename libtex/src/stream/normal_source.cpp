@@ -20,8 +20,8 @@ namespace tex::inline v1 {
 namespace {
 
 // Turns normals that were unpacked with y up, whatever it is, so that their y points up.
-Result<void> turn_up(Source& source) {
-    const Result<YAxis> shown = measured_y(source.chain.levels.front());
+Result<void> turn_up(Source& source, const SourceOptions& options) {
+    const Result<YAxis> shown = measured_y(source.chain.levels.front(), options);
     if (!shown) return shown.error();
     source.info.y_axis = *shown;
     source.info.y_known = true;
@@ -122,7 +122,7 @@ Result<Source> unpack_source(Texture texture, SourceOptions options, bool base_o
         source.chain = std::move(*chain);
     }
     if (options.measure_y) {
-        if (const Result<void> turned = turn_up(source); !turned) return turned.error();
+        if (const Result<void> turned = turn_up(source, options); !turned) return turned.error();
     }
     inspect(source.chain.levels.front(), options, source.info);
     if (options.inspect) {

@@ -115,6 +115,7 @@ Result<void> PackRun::prepare() {
     const Extent base = extent(first_);
     if (mip_) left_out_ = first_level(*mip_, base);
     report_.extent = level_extent(base, left_out_);
+    report_.left_out = first_ - options_.level.value_or(0) + left_out_;
     report_.pack = packing_for(options_.pack, container_, report_.source);
     files_.push_back({output_, options_.level_names, container_, report_.pack, options_.write});
     add_targets(options_.more, report_.source, files_);
@@ -297,6 +298,9 @@ Result<PackFileReport> PackRun::run() {
         const Result<void> packed = pack_level(level, part_of(execution_, done, next));
         if (!packed) return packed.error();
         done = next;
+    }
+    if (options_.accept) {
+        if (const Result<void> accepted = options_.accept(report_.source); !accepted) return accepted.error();
     }
     if (const Result<void> committed = targets_.commit(); !committed) return committed.error();
     report_.bytes = targets_.bytes(Content::normals);

@@ -124,7 +124,7 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     Flow flow;
     add_to(flow, 0, {{}, &inspector});
     if (Result<void> seen = flow.run(execution.quiet()); !seen) return seen;
-    const Result<YAxis> shown = measured_y(inspector.y());
+    const Result<YAxis> shown = measured_y(inspector.y(), options_);
     if (!shown) return shown.error().of(map_->path());
     options_.unpack.y_axis = *shown;
     return settle();

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// input_kind.h: what check-normals finds a picture to be, for the commands that were given it as something else. All
+// commands thus call a picture by one name.
+
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tex/file.h>
+
+namespace tex::cli {
+
+enum class PictureKind {
+    normals,         // of tangent space, however damaged
+    no_map,          // colours, data, heights, or a map that lost x
+    object_space,    // vectors of all directions
+    inverted,        // blue is inverted
+    has_background,  // normals around which a colour that is none is not filled
+};
+
+struct JudgedPicture {
+    PictureKind kind = PictureKind::normals;
+    std::string words;        // of the finding, with its id: "R, G and B are equal in 100 % of the texels (N210)"
+    bool is_vectors = false;  // unit vectors are stored in three channels: it is a normal map by intention
+};
+
+// Reads the file again, as check-normals does, which takes as long: for pictures that raise a doubt. Nothing if it
+// cannot be read twice.
+[[nodiscard]] std::optional<JudgedPicture> judge_picture(const std::string& path, const ReadOptions& read);
+
+// "this is no normal map: R, G and B are equal ..."
+[[nodiscard]] std::string no_map_text(const JudgedPicture& judged);
+
+// Added where a manifest makes nothing of such an input.
+inline constexpr const char* kTakeAny = "; check = { inputs = false } in the rule makes it all the same";
+
+// What to say of a picture of heights that is a normal map; empty: nothing.
+[[nodiscard]] std::string no_heights_text(const std::string& path, const ReadOptions& read);
+
+}  // namespace tex::cli
