@@ -13,14 +13,14 @@ namespace {
 
 struct KindOfRule {
     std::string_view id;
-    PictureKind kind;
+    InputKind kind;
 };
 
 // By weight: the first one that is found decides.
 constexpr KindOfRule kKinds[] = {
-    {"N210", PictureKind::no_map},         {"N216", PictureKind::no_map},       {"N222", PictureKind::no_map},
-    {"N220", PictureKind::inverted},       {"N213", PictureKind::object_space}, {"N214", PictureKind::no_map},
-    {"N215", PictureKind::has_background},
+    {"N210", InputKind::no_map},         {"N216", InputKind::no_map},       {"N222", InputKind::no_map},
+    {"N220", InputKind::inverted},       {"N213", InputKind::object_space}, {"N214", InputKind::no_map},
+    {"N215", InputKind::has_background},
 };
 
 }  // namespace
@@ -47,7 +47,7 @@ std::string no_map_text(const JudgedPicture& judged) { return "this is no normal
 
 std::string no_heights_text(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);
-    if (!judged || !judged->is_vectors || judged->kind == PictureKind::no_map) return {};
+    if (!judged || !judged->is_vectors || judged->kind == InputKind::no_map) return {};
     return "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "
            "mip-normals make textures";
 }

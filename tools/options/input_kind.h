@@ -11,7 +11,7 @@
 
 namespace tex::cli {
 
-enum class PictureKind {
+enum class InputKind {
     normals,         // of tangent space, however damaged
     no_map,          // colours, data, heights, or a map that lost x
     object_space,    // vectors of all directions
@@ -20,7 +20,7 @@ enum class PictureKind {
 };
 
 struct JudgedPicture {
-    PictureKind kind = PictureKind::normals;
+    InputKind kind = InputKind::normals;
     std::string words;        // of the finding, with its id: "R, G and B are equal in 100 % of the texels (N210)"
     bool is_vectors = false;  // unit vectors are stored in three channels: it is a normal map by intention
 };
