@@ -416,7 +416,8 @@ TEST_F(BuildNormals, ACheckThatFailsKeepsTheOldOutput) {
     const Ran ran = build();
     EXPECT_EQ(ran.code, 1);
     EXPECT_EQ(count("refused"), 1u);
-    EXPECT_NE(ran.err.find("error: out/wall_h.dds, made from art/wall_h.png (normals.toml, line "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("error: out/wall_h.dds, made from art/wall_h.png (normals.toml, line "), std::string::npos)
+        << ran.err;
     EXPECT_NE(ran.err.find("level 0: p99.9 "), std::string::npos) << ran.err;
     EXPECT_EQ(outputs(), first) << "the old output stays, and no other file";
     // What needs a texture that is refused is refused, too.

@@ -86,7 +86,9 @@ Result<void> TextureCheck::compare_with_source(const MadeTexture& made, const Re
 std::string TextureCheck::sentence_of(const Finding& finding, const CheckReport& report,
                                       const std::string& input) const {
     std::string sentence = finding.message;
-    if (finding.has_texel) sentence += fmt::format(", first at column {}, row {}", finding.column, finding.row);
+    const bool has_place = sentence.find("column") != std::string::npos;
+    if (finding.has_texel && !has_place)
+        sentence += fmt::format(", first at column {}, row {}", finding.column, finding.row);
     sentence += fmt::format(" ({}, {})", finding.rule->name, finding.rule->id);
     CheckReport of_input = report;
     of_input.file = input;

@@ -144,7 +144,8 @@ Result<void> run_command(Converter& converter, Job& job, std::vector<std::string
 }
 
 // An error if the command refuses the input.
-Result<void> accept_input(const Converter& converter, const std::string& input, const MakeSettings& settings, Jobs& jobs) {
+Result<void> accept_input(const Converter& converter, const std::string& input, const MakeSettings& settings,
+                          Jobs& jobs) {
     if (settings.takes_any) return {};
     return converter.accept(jobs.add(Task{input, {}}));
 }

@@ -124,7 +124,7 @@ struct BakeFileOptions {
 struct BakeFileReport {
     Extent extent;  // of the base level
     int levels = 1;
-    int left_out = 0;  // larger levels, which max_side leaves out
+    int left_out = 0;       // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
     Strength strength;              // with which it was baked
@@ -216,7 +216,7 @@ struct PackFileOptions {
 struct PackFileReport {
     Extent extent;  // of the base level that was written
     int levels = 1;
-    int left_out = 0;  // larger levels, which max_side leaves out
+    int left_out = 0;       // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     std::size_t roughness_bytes = 0;
     Format roughness_format = Format::bc4_unorm;  // if a roughness file was written
@@ -297,7 +297,7 @@ struct BlendFileOptions {
 struct BlendFileReport {
     Extent extent;  // of the base level
     int levels = 1;
-    int left_out = 0;  // larger levels, which max_side leaves out
+    int left_out = 0;       // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     PackOptions pack;
     SourceInfo source;                // of the base
@@ -338,7 +338,7 @@ struct MapRead {
 struct StepsReport {
     Extent extent;  // of the base level
     int levels = 1;
-    int left_out = 0;  // larger levels, which max_side leaves out
+    int left_out = 0;          // larger levels, which max_side leaves out
     std::size_t bytes = 0;     // of all outputs
     PackOptions pack;          // of `output`
     HeightReport heights;      // if the first step bakes
