@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -57,11 +59,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(angle_row_target);
-
-void angle_row(const VectorRow& a, const VectorRow& b, int count, float* degrees) {
-    HWY_DYNAMIC_DISPATCH(angle_row_target)(a, b, count, degrees);
-}
+TEX_KERNEL(void, angle_row, angle_row_target, (const VectorRow& a, const VectorRow& b, int count, float* degrees),
+           (a, b, count, degrees))
 
 }  // namespace tex::inline v1
 #endif

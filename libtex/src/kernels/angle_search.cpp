@@ -14,6 +14,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 #ifndef TEX_ANGLE_SEARCH_ONCE
 #define TEX_ANGLE_SEARCH_ONCE
 namespace tex::inline v1 {
@@ -234,11 +236,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(improve_angles);
-
-void improve_angles(const BlockRow& row, const HalfKind kinds[2], int reach, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(improve_angles)(row, kinds, reach, blocks);
-}
+TEX_KERNEL(void, improve_angles, improve_angles,
+           (const BlockRow& row, const HalfKind kinds[2], int reach, std::byte* blocks), (row, kinds, reach, blocks))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

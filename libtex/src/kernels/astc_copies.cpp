@@ -7,6 +7,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -74,12 +75,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(AstcCopyCosts);
-
-void astc_copy_costs(const AstcCopyTable& table, const AstcCopyTexels& block, const float* prices, float scale,
-                     float literal, int count, float* wholes, float* fronts) {
-    HWY_DYNAMIC_DISPATCH(AstcCopyCosts)(table, block, prices, scale, literal, count, wholes, fronts);
-}
+TEX_KERNEL(void, astc_copy_costs, AstcCopyCosts,
+           (const AstcCopyTable& table, const AstcCopyTexels& block, const float* prices, float scale, float literal,
+            int count, float* wholes, float* fronts),
+           (table, block, prices, scale, literal, count, wholes, fronts))
 
 }  // namespace tex::inline v1
 #endif

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/astc_steps-inl.h"
+#include "kernels/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
@@ -76,14 +77,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(FitAstc);
-HWY_EXPORT(AstcLanes);
+TEX_KERNEL(int, astc_lanes, AstcLanes, (), ())
 
-int astc_lanes() { return HWY_DYNAMIC_DISPATCH(AstcLanes)(); }
-
-void fit_astc(const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits) {
-    HWY_DYNAMIC_DISPATCH(FitAstc)(plan, steps, group, fits);
-}
+TEX_KERNEL(void, fit_astc, FitAstc,
+           (const AstcPlan& plan, const AstcSteps& steps, const AstcGroup& group, AstcFits& fits),
+           (plan, steps, group, fits))
 
 }  // namespace tex::inline v1
 #endif

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/astc_shape-inl.h"
+#include "kernels/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
@@ -140,16 +141,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(GuessAstc);
-HWY_EXPORT(AstcPlanes);
+TEX_KERNEL(void, astc_planes, AstcPlanes, (const float* xy, std::size_t count, float scale, float* x, float* y),
+           (xy, count, scale, x, y))
 
-void astc_planes(const float* xy, std::size_t count, float scale, float* x, float* y) {
-    HWY_DYNAMIC_DISPATCH(AstcPlanes)(xy, count, scale, x, y);
-}
-
-void guess_astc(const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses) {
-    HWY_DYNAMIC_DISPATCH(GuessAstc)(guide, group, guesses);
-}
+TEX_KERNEL(void, guess_astc, GuessAstc, (const AstcGuide& guide, const AstcGroup& group, AstcGuesses& guesses),
+           (guide, group, guesses))
 
 }  // namespace tex::inline v1
 #endif

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "kernels/astc_shape-inl.h"
+#include "kernels/dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
@@ -303,12 +304,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(GuessAstcPatterns);
-
-void guess_astc_patterns(const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns, int plans,
-                         AstcGuesses& guesses) {
-    HWY_DYNAMIC_DISPATCH(GuessAstcPatterns)(guide, group, partitions, patterns, plans, guesses);
-}
+TEX_KERNEL(void, guess_astc_patterns, GuessAstcPatterns,
+           (const AstcGuide& guide, const AstcGroup& group, int partitions, int patterns, int plans,
+            AstcGuesses& guesses),
+           (guide, group, partitions, patterns, plans, guesses))
 
 }  // namespace tex::inline v1
 #endif

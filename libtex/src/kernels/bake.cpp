@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -158,52 +160,37 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(AreFinite);
-HWY_EXPORT(LimitHeights);
-HWY_EXPORT(ContinueHeights);
-HWY_EXPORT(NormalsByDifference);
-HWY_EXPORT(DeriveRow);
-HWY_EXPORT(DeriveColumn);
-HWY_EXPORT(NormalsBySmoothing);
-HWY_EXPORT(WidenSlopeBounds);
-HWY_EXPORT(CountBelow);
+TEX_KERNEL(bool, are_finite, AreFinite, (const float* row, int count), (row, count))
 
-bool are_finite(const float* row, int count) { return HWY_DYNAMIC_DISPATCH(AreFinite)(row, count); }
+TEX_KERNEL(void, limit_heights, LimitHeights, (const float* in, float scale, int count, float* out),
+           (in, scale, count, out))
 
-void limit_heights(const float* in, float scale, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(LimitHeights)(in, scale, count, out);
-}
+TEX_KERNEL(void, continue_heights, ContinueHeights,
+           (const float* inner, const float* edge, const float* other, bool reflected, float drift, float scale,
+            int count, float* out),
+           (inner, edge, other, reflected, drift, scale, count, out))
 
-void continue_heights(const float* inner, const float* edge, const float* other, bool reflected, float drift,
-                      float scale, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(ContinueHeights)(inner, edge, other, reflected, drift, scale, count, out);
-}
+TEX_KERNEL(void, normals_by_difference, NormalsByDifference,
+           (const float* left, const float* right, const float* down, const float* up, float scale_x, float scale_y,
+            int count, NormalRow out),
+           (left, right, down, up, scale_x, scale_y, count, out))
 
-void normals_by_difference(const float* left, const float* right, const float* down, const float* up, float scale_x,
-                           float scale_y, int count, NormalRow out) {
-    HWY_DYNAMIC_DISPATCH(NormalsByDifference)(left, right, down, up, scale_x, scale_y, count, out);
-}
+TEX_KERNEL(void, derive_row, DeriveRow, (const float* row, const float* derivative, int radius, int count, float* out),
+           (row, derivative, radius, count, out))
 
-void derive_row(const float* row, const float* derivative, int radius, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(DeriveRow)(row, derivative, radius, count, out);
-}
+TEX_KERNEL(void, derive_column, DeriveColumn,
+           (const float* const* rows, const float* derivative, int radius, int count, float* out),
+           (rows, derivative, radius, count, out))
 
-void derive_column(const float* const* rows, const float* derivative, int radius, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(DeriveColumn)(rows, derivative, radius, count, out);
-}
+TEX_KERNEL(void, normals_by_smoothing, NormalsBySmoothing,
+           (const float* const* du, const float* dv, const float* smoothing, int radius, float scale_x, float scale_y,
+            int count, NormalRow out),
+           (du, dv, smoothing, radius, scale_x, scale_y, count, out))
 
-void normals_by_smoothing(const float* const* du, const float* dv, const float* smoothing, int radius, float scale_x,
-                          float scale_y, int count, NormalRow out) {
-    HWY_DYNAMIC_DISPATCH(NormalsBySmoothing)(du, dv, smoothing, radius, scale_x, scale_y, count, out);
-}
+TEX_KERNEL(void, widen_slope_bounds, WidenSlopeBounds,
+           (const float* x, const float* y, const float* z, int count, SlopeBounds& bounds), (x, y, z, count, bounds))
 
-void widen_slope_bounds(const float* x, const float* y, const float* z, int count, SlopeBounds& bounds) {
-    HWY_DYNAMIC_DISPATCH(WidenSlopeBounds)(x, y, z, count, bounds);
-}
-
-int count_below(const float* values, float limit, int count) {
-    return HWY_DYNAMIC_DISPATCH(CountBelow)(values, limit, count);
-}
+TEX_KERNEL(int, count_below, CountBelow, (const float* values, float limit, int count), (values, limit, count))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

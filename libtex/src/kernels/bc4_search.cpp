@@ -13,6 +13,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -240,12 +242,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(search_bc4_blocks);
-
-void search_bc4_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, int count, Bc4Codes codes,
-                       Bc4Endpoints* endpoints) {
-    HWY_DYNAMIC_DISPATCH(search_bc4_blocks)(blocks, bounds, count, codes, endpoints);
-}
+TEX_KERNEL(void, search_bc4_blocks, search_bc4_blocks,
+           (const BlockTexels* blocks, const ClusterBounds* bounds, int count, Bc4Codes codes, Bc4Endpoints* endpoints),
+           (blocks, bounds, count, codes, endpoints))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -144,22 +145,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(Taps);
-HWY_EXPORT(FindRuns);
-HWY_EXPORT(BilinearRow);
+TEX_KERNEL(void, tap_row, Taps, (double start, double step, double rest, Wrap wrap, int n, int count, TapRow taps),
+           (start, step, rest, wrap, n, count, taps))
 
-void tap_row(double start, double step, double rest, Wrap wrap, int n, int count, TapRow taps) {
-    HWY_DYNAMIC_DISPATCH(Taps)(start, step, rest, wrap, n, count, taps);
-}
+TEX_KERNEL(void, find_runs, FindRuns, (const TapRow& taps, int count, int readable, std::int32_t* start),
+           (taps, count, readable, start))
 
-void find_runs(const TapRow& taps, int count, int readable, std::int32_t* start) {
-    HWY_DYNAMIC_DISPATCH(FindRuns)(taps, count, readable, start);
-}
-
-void bilinear_row(const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight,
-                  int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(BilinearRow)(upper, lower, columns, runs, weight, count, out);
-}
+TEX_KERNEL(void, bilinear_row, BilinearRow,
+           (const float* upper, const float* lower, const TapRow& columns, const std::int32_t* runs, float weight,
+            int count, float* out),
+           (upper, lower, columns, runs, weight, count, out))
 
 }  // namespace tex::inline v1
 #endif

@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -125,19 +126,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(BlendRow);
-HWY_EXPORT(RotateRow);
-HWY_EXPORT(MixRow);
+TEX_KERNEL(void, blend_row, BlendRow,
+           (BlendMode mode, NormalRow base, NormalRow detail, const float* weight, int count),
+           (mode, base, detail, weight, count))
 
-void blend_row(BlendMode mode, NormalRow base, NormalRow detail, const float* weight, int count) {
-    HWY_DYNAMIC_DISPATCH(BlendRow)(mode, base, detail, weight, count);
-}
+TEX_KERNEL(void, rotate_row, RotateRow, (NormalRow row, float cosine, float sine, int count),
+           (row, cosine, sine, count))
 
-void rotate_row(NormalRow row, float cosine, float sine, int count) {
-    HWY_DYNAMIC_DISPATCH(RotateRow)(row, cosine, sine, count);
-}
-
-void mix_row(float* a, const float* b, float t, int count) { HWY_DYNAMIC_DISPATCH(MixRow)(a, b, t, count); }
+TEX_KERNEL(void, mix_row, MixRow, (float* a, const float* b, float t, int count), (a, b, t, count))
 
 }  // namespace tex::inline v1
 #endif

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -73,16 +75,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(block_chords_target);
-HWY_EXPORT(chord_sums_target);
+TEX_KERNEL(void, block_chords, block_chords_target,
+           (const float* const normals[3], const float x[16], const float y[16], float chords[16]),
+           (normals, x, y, chords))
 
-void block_chords(const float* const normals[3], const float x[16], const float y[16], float chords[16]) {
-    HWY_DYNAMIC_DISPATCH(block_chords_target)(normals, x, y, chords);
-}
-
-void chord_sums(const ChordTexels& texels, const float* values, int stride, int count, float* sums) {
-    HWY_DYNAMIC_DISPATCH(chord_sums_target)(texels, values, stride, count, sums);
-}
+TEX_KERNEL(void, chord_sums, chord_sums_target,
+           (const ChordTexels& texels, const float* values, int stride, int count, float* sums),
+           (texels, values, stride, count, sums))
 
 }  // namespace tex::inline v1
 #endif

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -112,11 +114,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(cluster_bounds);
-
-void cluster_bounds(const BlockTexels* blocks, int count, ClusterBounds* bounds) {
-    HWY_DYNAMIC_DISPATCH(cluster_bounds)(blocks, count, bounds);
-}
+TEX_KERNEL(void, cluster_bounds, cluster_bounds, (const BlockTexels* blocks, int count, ClusterBounds* bounds),
+           (blocks, count, bounds))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -170,31 +172,25 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(MixCorners);
-HWY_EXPORT(MixDirections);
-HWY_EXPORT(MixNormals);
-HWY_EXPORT(EncodeVectors);
+TEX_KERNEL(void, mix_corners, MixCorners,
+           (const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
+            VectorArrays<double> sums),
+           (corners, weights, count, sums))
 
-void mix_corners(const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
-                 VectorArrays<double> sums) {
-    HWY_DYNAMIC_DISPATCH(MixCorners)(corners, weights, count, sums);
-}
+TEX_KERNEL(bool, mix_directions, MixDirections,
+           (const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
+            VectorArrays<double> directions),
+           (corners, weights, count, directions))
 
-bool mix_directions(const CornerVectors& corners, VectorArrays<const double> weights, std::size_t count,
-                    VectorArrays<double> directions) {
-    return HWY_DYNAMIC_DISPATCH(MixDirections)(corners, weights, count, directions);
-}
+TEX_KERNEL(bool, mix_normals, MixNormals,
+           (const float* const normals[9], VectorArrays<const double> weights, std::size_t count,
+            VectorArrays<double> units),
+           (normals, weights, count, units))
 
-bool mix_normals(const float* const normals[9], VectorArrays<const double> weights, std::size_t count,
-                 VectorArrays<double> units) {
-    return HWY_DYNAMIC_DISPATCH(MixNormals)(normals, weights, count, units);
-}
-
-EncodedCounts encode_vectors(const FrameCorners& frame, VectorArrays<const double> weights,
-                             VectorArrays<const double> vectors, std::size_t count, VectorArrays<double> units,
-                             VectorArrays<float> texels) {
-    return HWY_DYNAMIC_DISPATCH(EncodeVectors)(frame, weights, vectors, count, units, texels);
-}
+TEX_KERNEL(EncodedCounts, encode_vectors, EncodeVectors,
+           (const FrameCorners& frame, VectorArrays<const double> weights, VectorArrays<const double> vectors,
+            std::size_t count, VectorArrays<double> units, VectorArrays<float> texels),
+           (frame, weights, vectors, count, units, texels))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

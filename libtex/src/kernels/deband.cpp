@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -181,73 +183,48 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(CodesOfHeights);
-HWY_EXPORT(HeightsOfCodes);
-HWY_EXPORT(ExtrapolateRow);
-HWY_EXPORT(LaplaceRow);
-HWY_EXPORT(SquareRow);
-HWY_EXPORT(RelaxRow);
-HWY_EXPORT(HalveCodes);
-HWY_EXPORT(HalveMeans);
-HWY_EXPORT(BetweenRows);
-HWY_EXPORT(DoubleRow);
-HWY_EXPORT(RepeatTexels);
-HWY_EXPORT(LimitRow);
-HWY_EXPORT(WeightsOfEnergy);
-HWY_EXPORT(LeastOf);
-HWY_EXPORT(GreatestOf);
+TEX_KERNEL(void, codes_of_heights, CodesOfHeights, (float lowest, float step, int count, float* row),
+           (lowest, step, count, row))
 
-void codes_of_heights(float lowest, float step, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(CodesOfHeights)(lowest, step, count, row);
-}
+TEX_KERNEL(void, heights_of_codes, HeightsOfCodes,
+           (const float* codes, float lowest, float step, int count, float* row), (codes, lowest, step, count, row))
 
-void heights_of_codes(const float* codes, float lowest, float step, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(HeightsOfCodes)(codes, lowest, step, count, row);
-}
+TEX_KERNEL(void, extrapolate_row, ExtrapolateRow, (const float* a, const float* b, float factor, int count, float* out),
+           (a, b, factor, count, out))
 
-void extrapolate_row(const float* a, const float* b, float factor, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(ExtrapolateRow)(a, b, factor, count, out);
-}
+TEX_KERNEL(void, laplace_row, LaplaceRow,
+           (const float* above, const float* row, const float* below, int count, float* out),
+           (above, row, below, count, out))
 
-void laplace_row(const float* above, const float* row, const float* below, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(LaplaceRow)(above, row, below, count, out);
-}
+TEX_KERNEL(void, square_row, SquareRow, (int count, float* row), (count, row))
 
-void square_row(int count, float* row) { HWY_DYNAMIC_DISPATCH(SquareRow)(count, row); }
+TEX_KERNEL(void, relax_row, RelaxRow, (const BendingRow& in, CodeRange range, int count, float* out),
+           (in, range, count, out))
 
-void relax_row(const BendingRow& in, CodeRange range, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(RelaxRow)(in, range, count, out);
-}
+TEX_KERNEL(void, halve_codes, HalveCodes, (const float* upper, const float* lower, int count, float* out),
+           (upper, lower, count, out))
 
-void halve_codes(const float* upper, const float* lower, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(HalveCodes)(upper, lower, count, out);
-}
+TEX_KERNEL(void, halve_means, HalveMeans, (const float* upper, const float* lower, int count, float* out),
+           (upper, lower, count, out))
 
-void halve_means(const float* upper, const float* lower, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(HalveMeans)(upper, lower, count, out);
-}
+TEX_KERNEL(void, between_rows, BetweenRows, (const float* const rows[4], int count, float* out), (rows, count, out))
 
-void between_rows(const float* const rows[4], int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(BetweenRows)(rows, count, out);
-}
+TEX_KERNEL(void, double_row, DoubleRow, (const float* row, int count, float* out), (row, count, out))
 
-void double_row(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(DoubleRow)(row, count, out); }
+TEX_KERNEL(void, repeat_texels, RepeatTexels, (const float* row, int count, float* out), (row, count, out))
 
-void repeat_texels(const float* row, int count, float* out) { HWY_DYNAMIC_DISPATCH(RepeatTexels)(row, count, out); }
+TEX_KERNEL(void, limit_row, LimitRow, (const float* codes, CodeRange range, int count, float* row),
+           (codes, range, count, row))
 
-void limit_row(const float* codes, CodeRange range, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(LimitRow)(codes, range, count, row);
-}
+TEX_KERNEL(void, weights_of_energy, WeightsOfEnergy,
+           (float noise, float significant, float factor, int count, float* row),
+           (noise, significant, factor, count, row))
 
-void weights_of_energy(float noise, float significant, float factor, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(WeightsOfEnergy)(noise, significant, factor, count, row);
-}
+TEX_KERNEL(void, least_of, LeastOf, (const float* other, int count, float* row), (other, count, row))
 
-void least_of(const float* other, int count, float* row) { HWY_DYNAMIC_DISPATCH(LeastOf)(other, count, row); }
-
-void greatest_of(float factor, float factor_of_other, const float* other, int count, float* row) {
-    HWY_DYNAMIC_DISPATCH(GreatestOf)(factor, factor_of_other, other, count, row);
-}
+TEX_KERNEL(void, greatest_of, GreatestOf,
+           (float factor, float factor_of_other, const float* other, int count, float* row),
+           (factor, factor_of_other, other, count, row))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -21,6 +21,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -274,8 +276,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(DecodeBlocks);
-
 void decode_texels(Format format, const std::byte* texels, int count, const ChannelRows& rows) {
     const FormatInfo info = format_info(format);
     const std::size_t sample_bytes = static_cast<std::size_t>(info.bits) / 8;
@@ -286,9 +286,9 @@ void decode_texels(Format format, const std::byte* texels, int count, const Chan
     }
 }
 
-void decode_blocks(Format format, const std::byte* blocks, int width, const ChannelRows& rows, std::ptrdiff_t stride) {
-    HWY_DYNAMIC_DISPATCH(DecodeBlocks)(format, blocks, blocks_across(width), rows, stride);
-}
+TEX_KERNEL(void, decode_blocks, DecodeBlocks,
+           (Format format, const std::byte* blocks, int width, const ChannelRows& rows, std::ptrdiff_t stride),
+           (format, blocks, blocks_across(width), rows, stride))
 
 }  // namespace tex::inline v1
 #endif

@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/fit_group-inl.h"
 
 #ifndef TEX_EAC_FIT_ONCE
@@ -180,11 +181,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(FitEacBlocks);
-
-void fit_eac_blocks(const FitRows& x, const FitRows& y, int count, EacCodes codes, std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(FitEacBlocks)(x, y, count, codes, blocks);
-}
+TEX_KERNEL(void, fit_eac_blocks, FitEacBlocks,
+           (const FitRows& x, const FitRows& y, int count, EacCodes codes, std::byte* blocks),
+           (x, y, count, codes, blocks))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

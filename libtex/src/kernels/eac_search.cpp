@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/eac_gains-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -325,12 +326,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(EncodeEacBlocks);
-
-void encode_eac_blocks(const BlockTexels* texels, const ClusterBounds* bounds, int count, EacCodes codes, Effort effort,
-                       std::byte* blocks) {
-    HWY_DYNAMIC_DISPATCH(EncodeEacBlocks)(texels, bounds, count, codes, effort, blocks);
-}
+TEX_KERNEL(void, encode_eac_blocks, EncodeEacBlocks,
+           (const BlockTexels* texels, const ClusterBounds* bounds, int count, EacCodes codes, Effort effort,
+            std::byte* blocks),
+           (texels, bounds, count, codes, effort, blocks))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

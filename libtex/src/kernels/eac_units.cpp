@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -40,11 +42,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(EacUnits);
-
-void eac_units(const float* row, int count, bool negate, int top, std::int32_t* units) {
-    HWY_DYNAMIC_DISPATCH(EacUnits)(row, count, negate, top, units);
-}
+TEX_KERNEL(void, eac_units, EacUnits, (const float* row, int count, bool negate, int top, std::int32_t* units),
+           (row, count, negate, top, units))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/fit_greens-inl.h"
 #include "kernels/fit_group-inl.h"
 #include "kernels/fit_palettes-inl.h"
@@ -238,16 +239,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(fit_dxt5nm_blocks);
-HWY_EXPORT(fit_bc5_blocks);
+TEX_KERNEL(bool, fit_dxt5nm_blocks, fit_dxt5nm_blocks,
+           (const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks),
+           (x, y, count, effort, blocks))
 
-bool fit_dxt5nm_blocks(const FitRows& x, const FitRows& y, int count, Effort effort, std::byte* blocks) {
-    return HWY_DYNAMIC_DISPATCH(fit_dxt5nm_blocks)(x, y, count, effort, blocks);
-}
-
-bool fit_bc5_blocks(const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks) {
-    return HWY_DYNAMIC_DISPATCH(fit_bc5_blocks)(x, y, count, codes, effort, blocks);
-}
+TEX_KERNEL(bool, fit_bc5_blocks, fit_bc5_blocks,
+           (const FitRows& x, const FitRows& y, int count, Bc4Codes codes, Effort effort, std::byte* blocks),
+           (x, y, count, codes, effort, blocks))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

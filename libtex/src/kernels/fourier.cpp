@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -212,36 +214,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(RunFourierStage);
-HWY_EXPORT(MultiplyGroups);
-HWY_EXPORT(HartleyOfFourier);
-HWY_EXPORT(CosineOfFourier);
-HWY_EXPORT(FourierOfCosine);
-HWY_EXPORT(DivideSpectrum);
+TEX_KERNEL(void, fourier_stage, RunFourierStage, (const FourierStage& stage, const float* in, float* out),
+           (stage, in, out))
 
-void fourier_stage(const FourierStage& stage, const float* in, float* out) {
-    HWY_DYNAMIC_DISPATCH(RunFourierStage)(stage, in, out);
-}
+TEX_KERNEL(void, multiply_groups, MultiplyGroups, (Product product, const float* factors, int count, float* data),
+           (product, factors, count, data))
 
-void multiply_groups(Product product, const float* factors, int count, float* data) {
-    HWY_DYNAMIC_DISPATCH(MultiplyGroups)(product, factors, count, data);
-}
+TEX_KERNEL(void, hartley_of_fourier, HartleyOfFourier, (const float* in, int count, float* out), (in, count, out))
 
-void hartley_of_fourier(const float* in, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(HartleyOfFourier)(in, count, out);
-}
+TEX_KERNEL(void, cosine_of_fourier, CosineOfFourier, (const float* in, const float* turns, int count, float* out),
+           (in, turns, count, out))
 
-void cosine_of_fourier(const float* in, const float* turns, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(CosineOfFourier)(in, turns, count, out);
-}
+TEX_KERNEL(void, fourier_of_cosine, FourierOfCosine, (const float* in, const float* turns, int count, float* out),
+           (in, turns, count, out))
 
-void fourier_of_cosine(const float* in, const float* turns, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(FourierOfCosine)(in, turns, count, out);
-}
-
-void divide_spectrum(const SpectrumRow& row, int count, float* data) {
-    HWY_DYNAMIC_DISPATCH(DivideSpectrum)(row, count, data);
-}
+TEX_KERNEL(void, divide_spectrum, DivideSpectrum, (const SpectrumRow& row, int count, float* data), (row, count, data))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -14,6 +14,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 #ifndef TEX_GREEN_SEARCH_ONCE
 #define TEX_GREEN_SEARCH_ONCE
 namespace tex::inline v1 {
@@ -170,11 +172,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(search_green_blocks);
-
-void search_green_blocks(const BlockTexels* blocks, const ClusterBounds* bounds, int count, GreenEndpoints* endpoints) {
-    HWY_DYNAMIC_DISPATCH(search_green_blocks)(blocks, bounds, count, endpoints);
-}
+TEX_KERNEL(void, search_green_blocks, search_green_blocks,
+           (const BlockTexels* blocks, const ClusterBounds* bounds, int count, GreenEndpoints* endpoints),
+           (blocks, bounds, count, endpoints))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

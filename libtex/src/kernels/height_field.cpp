@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -115,35 +117,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(LumaRow);
-HWY_EXPORT(AverageRow);
-HWY_EXPORT(MaxRow);
-HWY_EXPORT(AutomaticRow);
-HWY_EXPORT(CleanRow);
-HWY_EXPORT(SmoothRow);
-HWY_EXPORT(SmoothColumn);
+TEX_KERNEL(void, luma_row, LumaRow, (ColorRow in, int count, float* out), (in, count, out))
 
-void luma_row(ColorRow in, int count, float* out) { HWY_DYNAMIC_DISPATCH(LumaRow)(in, count, out); }
+TEX_KERNEL(void, average_row, AverageRow, (ColorRow in, int count, float* out), (in, count, out))
 
-void average_row(ColorRow in, int count, float* out) { HWY_DYNAMIC_DISPATCH(AverageRow)(in, count, out); }
+TEX_KERNEL(void, max_row, MaxRow, (ColorRow in, int count, float* out), (in, count, out))
 
-void max_row(ColorRow in, int count, float* out) { HWY_DYNAMIC_DISPATCH(MaxRow)(in, count, out); }
+TEX_KERNEL(std::int64_t, automatic_row, AutomaticRow, (ColorRow in, int count, float* out), (in, count, out))
 
-std::int64_t automatic_row(ColorRow in, int count, float* out) {
-    return HWY_DYNAMIC_DISPATCH(AutomaticRow)(in, count, out);
-}
+TEX_KERNEL(std::int64_t, clean_row, CleanRow, (float* row, int count, float no_data, bool invert),
+           (row, count, no_data, invert))
 
-std::int64_t clean_row(float* row, int count, float no_data, bool invert) {
-    return HWY_DYNAMIC_DISPATCH(CleanRow)(row, count, no_data, invert);
-}
+TEX_KERNEL(void, smooth_row, SmoothRow, (const float* row, const float* smoothing, int radius, int count, float* out),
+           (row, smoothing, radius, count, out))
 
-void smooth_row(const float* row, const float* smoothing, int radius, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(SmoothRow)(row, smoothing, radius, count, out);
-}
-
-void smooth_column(const float* const* rows, const float* smoothing, int radius, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(SmoothColumn)(rows, smoothing, radius, count, out);
-}
+TEX_KERNEL(void, smooth_column, SmoothColumn,
+           (const float* const* rows, const float* smoothing, int radius, int count, float* out),
+           (rows, smoothing, radius, count, out))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -122,11 +123,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(AddLevelRow);
-
-void add_level_row(const LevelRow& row, int count, LevelSums& sums) {
-    HWY_DYNAMIC_DISPATCH(AddLevelRow)(row, count, sums);
-}
+TEX_KERNEL(void, add_level_row, AddLevelRow, (const LevelRow& row, int count, LevelSums& sums), (row, count, sums))
 
 void LevelSums::add(const LevelSums& o) {
     for (std::size_t c = 0; c < 2; ++c) s[c] += o.s[c], r[c] += o.r[c];

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -140,47 +142,32 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(FilterRows);
-HWY_EXPORT(SplitRow);
-HWY_EXPORT(FilterColumns);
-HWY_EXPORT(FilterColumnsEvenly);
-HWY_EXPORT(HalveRows);
-HWY_EXPORT(SlopesOfVectors);
-HWY_EXPORT(FinishVectors);
-HWY_EXPORT(FinishSlopes);
+TEX_KERNEL(void, filter_rows, FilterRows,
+           (const float* const* rows, const float* weights, int taps, int count, float* out),
+           (rows, weights, taps, count, out))
 
-void filter_rows(const float* const* rows, const float* weights, int taps, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(FilterRows)(rows, weights, taps, count, out);
-}
+TEX_KERNEL(void, split_row, SplitRow, (const float* row, int count, float* even, float* odd), (row, count, even, odd))
 
-void split_row(const float* row, int count, float* even, float* odd) {
-    HWY_DYNAMIC_DISPATCH(SplitRow)(row, count, even, odd);
-}
+TEX_KERNEL(void, filter_columns, FilterColumns,
+           (const float* even, const float* odd, const float* weights, std::ptrdiff_t stride, int taps, int count,
+            float* out),
+           (even, odd, weights, stride, taps, count, out))
 
-void filter_columns(const float* even, const float* odd, const float* weights, std::ptrdiff_t stride, int taps,
-                    int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(FilterColumns)(even, odd, weights, stride, taps, count, out);
-}
+TEX_KERNEL(void, filter_columns_evenly, FilterColumnsEvenly,
+           (const float* even, const float* odd, const float* weights, int taps, int count, float* out),
+           (even, odd, weights, taps, count, out))
 
-void filter_columns_evenly(const float* even, const float* odd, const float* weights, int taps, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(FilterColumnsEvenly)(even, odd, weights, taps, count, out);
-}
+TEX_KERNEL(void, halve_rows, HalveRows, (const float* upper, const float* lower, int count, float* out),
+           (upper, lower, count, out))
 
-void halve_rows(const float* upper, const float* lower, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(HalveRows)(upper, lower, count, out);
-}
+TEX_KERNEL(void, slopes_of_vectors, SlopesOfVectors,
+           (const float* x, const float* y, const float* z, int count, float* p, float* q), (x, y, z, count, p, q))
 
-void slopes_of_vectors(const float* x, const float* y, const float* z, int count, float* p, float* q) {
-    HWY_DYNAMIC_DISPATCH(SlopesOfVectors)(x, y, z, count, p, q);
-}
+TEX_KERNEL(void, finish_vectors, FinishVectors, (float* x, float* y, float* z, int count, float fade, float least_z),
+           (x, y, z, count, fade, least_z))
 
-void finish_vectors(float* x, float* y, float* z, int count, float fade, float least_z) {
-    HWY_DYNAMIC_DISPATCH(FinishVectors)(x, y, z, count, fade, least_z);
-}
-
-void finish_slopes(float* x, float* y, float* z, int count, float fade) {
-    HWY_DYNAMIC_DISPATCH(FinishSlopes)(x, y, z, count, fade);
-}
+TEX_KERNEL(void, finish_slopes, FinishSlopes, (float* x, float* y, float* z, int count, float fade),
+           (x, y, z, count, fade))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -67,16 +69,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(pack_unorm8);
-HWY_EXPORT(pack_unorm16);
+TEX_KERNEL(void, pack_unorm8, pack_unorm8, (const PackChannel* channels, int count, int width, std::uint8_t* out),
+           (channels, count, width, out))
 
-void pack_unorm8(const PackChannel* channels, int count, int width, std::uint8_t* out) {
-    HWY_DYNAMIC_DISPATCH(pack_unorm8)(channels, count, width, out);
-}
-
-void pack_unorm16(const PackChannel* channels, int count, int width, std::uint16_t* out) {
-    HWY_DYNAMIC_DISPATCH(pack_unorm16)(channels, count, width, out);
-}
+TEX_KERNEL(void, pack_unorm16, pack_unorm16, (const PackChannel* channels, int count, int width, std::uint16_t* out),
+           (channels, count, width, out))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

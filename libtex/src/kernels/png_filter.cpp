@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/png_predict-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -136,17 +137,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(FilterPngRow);
-HWY_EXPORT(SwapSampleBytes);
+TEX_KERNEL(void, filter_png_row, FilterPngRow,
+           (const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::size_t step, std::uint8_t* out),
+           (row, above, count, step, out))
 
-void filter_png_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t count, std::size_t step,
-                    std::uint8_t* out) {
-    HWY_DYNAMIC_DISPATCH(FilterPngRow)(row, above, count, step, out);
-}
-
-void swap_sample_bytes(std::uint8_t* samples, std::size_t count) {
-    HWY_DYNAMIC_DISPATCH(SwapSampleBytes)(samples, count);
-}
+TEX_KERNEL(void, swap_sample_bytes, SwapSampleBytes, (std::uint8_t * samples, std::size_t count), (samples, count))
 
 }  // namespace tex::inline v1
 #endif

@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/png_predict-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -170,12 +171,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(UnfilterPngRows);
-
-void unfilter_png_rows(std::uint8_t* above, std::size_t stride, std::size_t count, std::size_t step, int rows,
-                       const std::uint8_t* filters) {
-    HWY_DYNAMIC_DISPATCH(UnfilterPngRows)(above, stride, count, step, rows, filters);
-}
+TEX_KERNEL(void, unfilter_png_rows, UnfilterPngRows,
+           (std::uint8_t * above, std::size_t stride, std::size_t count, std::size_t step, int rows,
+            const std::uint8_t* filters),
+           (above, stride, count, step, rows, filters))
 
 }  // namespace tex::inline v1
 #endif

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -83,22 +85,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(CleanRoughness);
-HWY_EXPORT(RoughnessOfAlpha2);
-HWY_EXPORT(RoughnessOfAverages);
+TEX_KERNEL(void, clean_roughness, CleanRoughness, (const float* roughness, int count, float* clean, float* alpha2),
+           (roughness, count, clean, alpha2))
 
-void clean_roughness(const float* roughness, int count, float* clean, float* alpha2) {
-    HWY_DYNAMIC_DISPATCH(CleanRoughness)(roughness, count, clean, alpha2);
-}
+TEX_KERNEL(void, roughness_of_alpha2, RoughnessOfAlpha2, (const float* alpha2, int count, float* roughness),
+           (alpha2, count, roughness))
 
-void roughness_of_alpha2(const float* alpha2, int count, float* roughness) {
-    HWY_DYNAMIC_DISPATCH(RoughnessOfAlpha2)(alpha2, count, roughness);
-}
-
-void roughness_of_averages(RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2,
-                           int count, float* roughness) {
-    HWY_DYNAMIC_DISPATCH(RoughnessOfAverages)(model, x, y, z, alpha2, count, roughness);
-}
+TEX_KERNEL(void, roughness_of_averages, RoughnessOfAverages,
+           (RoughnessModel model, const float* x, const float* y, const float* z, const float* alpha2, int count,
+            float* roughness),
+           (model, x, y, z, alpha2, count, roughness))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -11,6 +11,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -94,11 +96,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(DecodeSamples);
-
-void decode_samples(SampleKind sample, int bits, const std::byte* first, std::size_t step, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(DecodeSamples)(sample, bits, first, step, count, out);
-}
+TEX_KERNEL(void, decode_samples, DecodeSamples,
+           (SampleKind sample, int bits, const std::byte* first, std::size_t step, int count, float* out),
+           (sample, bits, first, step, count, out))
 
 }  // namespace tex::inline v1
 #endif

@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -38,11 +39,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(ScaleRow);
-
-void scale_row(const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out) {
-    HWY_DYNAMIC_DISPATCH(ScaleRow)(in, scale, mode, count, out);
-}
+TEX_KERNEL(void, scale_row, ScaleRow,
+           (const VectorRow& in, float scale, ScaleMode mode, int count, const NormalRow& out),
+           (in, scale, mode, count, out))
 
 }  // namespace tex::inline v1
 #endif

@@ -12,6 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -120,42 +121,30 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(SlopesOfNormals);
-HWY_EXPORT(ExcessSlopes);
-HWY_EXPORT(CountWithoutSlope);
-HWY_EXPORT(ZeroWithoutNormal);
-HWY_EXPORT(SumDifferences);
-HWY_EXPORT(WeightedSum);
-HWY_EXPORT(ShiftAndScale);
+TEX_KERNEL(int, slopes_of_normals, SlopesOfNormals,
+           (const VectorRow& normals, float least_z, int count, float* p, float* q), (normals, least_z, count, p, q))
 
-int slopes_of_normals(const VectorRow& normals, float least_z, int count, float* p, float* q) {
-    return HWY_DYNAMIC_DISPATCH(SlopesOfNormals)(normals, least_z, count, p, q);
-}
+TEX_KERNEL(void, excess_slopes, ExcessSlopes,
+           (const VectorRow& normals, const VectorRow& made, float least_z, int count, float* p, float* q),
+           (normals, made, least_z, count, p, q))
 
-void excess_slopes(const VectorRow& normals, const VectorRow& made, float least_z, int count, float* p, float* q) {
-    HWY_DYNAMIC_DISPATCH(ExcessSlopes)(normals, made, least_z, count, p, q);
-}
+TEX_KERNEL(int, count_without_slope, CountWithoutSlope, (const VectorRow& normals, float least_z, int count),
+           (normals, least_z, count))
 
-int count_without_slope(const VectorRow& normals, float least_z, int count) {
-    return HWY_DYNAMIC_DISPATCH(CountWithoutSlope)(normals, least_z, count);
-}
+TEX_KERNEL(void, zero_without_normal, ZeroWithoutNormal, (const VectorRow& normals, int count, float* values),
+           (normals, count, values))
 
-void zero_without_normal(const VectorRow& normals, int count, float* values) {
-    HWY_DYNAMIC_DISPATCH(ZeroWithoutNormal)(normals, count, values);
-}
+TEX_KERNEL(void, sum_differences, SumDifferences,
+           (const float* x_plus, const float* x_minus, float x_factor, const float* y_plus, const float* y_minus,
+            float y_factor, int count, float* out),
+           (x_plus, x_minus, x_factor, y_plus, y_minus, y_factor, count, out))
 
-void sum_differences(const float* x_plus, const float* x_minus, float x_factor, const float* y_plus,
-                     const float* y_minus, float y_factor, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(SumDifferences)(x_plus, x_minus, x_factor, y_plus, y_minus, y_factor, count, out);
-}
+TEX_KERNEL(void, weighted_sum, WeightedSum,
+           (const float* a, float a_factor, const float* b, float b_factor, int count, float* out),
+           (a, a_factor, b, b_factor, count, out))
 
-void weighted_sum(const float* a, float a_factor, const float* b, float b_factor, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(WeightedSum)(a, a_factor, b, b_factor, count, out);
-}
-
-void shift_and_scale(float offset, float factor, int count, float* values) {
-    HWY_DYNAMIC_DISPATCH(ShiftAndScale)(offset, factor, count, values);
-}
+TEX_KERNEL(void, shift_and_scale, ShiftAndScale, (float offset, float factor, int count, float* values),
+           (offset, factor, count, values))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -274,26 +275,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(CountStoredVectors);
-HWY_EXPORT(WidenRange);
-HWY_EXPORT(RestoreStoredVectors);
-HWY_EXPORT(AveragePairs);
+TEX_KERNEL(void, count_stored_vectors, CountStoredVectors,
+           (const StoredRow& row, const VectorLimits& limits, int width, VectorCounts& counts),
+           (row, limits, width, counts))
 
-void count_stored_vectors(const StoredRow& row, const VectorLimits& limits, int width, VectorCounts& counts) {
-    HWY_DYNAMIC_DISPATCH(CountStoredVectors)(row, limits, width, counts);
-}
+TEX_KERNEL(void, widen_range, WidenRange, (const float* values, int count, float& low, float& high),
+           (values, count, low, high))
 
-void widen_range(const float* values, int count, float& low, float& high) {
-    HWY_DYNAMIC_DISPATCH(WidenRange)(values, count, low, high);
-}
+TEX_KERNEL(void, restore_stored_vectors, RestoreStoredVectors,
+           (const StoredRow& row, int width, float* x, float* y, float* z), (row, width, x, y, z))
 
-void restore_stored_vectors(const StoredRow& row, int width, float* x, float* y, float* z) {
-    HWY_DYNAMIC_DISPATCH(RestoreStoredVectors)(row, width, x, y, z);
-}
-
-void average_pairs(const float* upper, const float* lower, int count, float* out) {
-    HWY_DYNAMIC_DISPATCH(AveragePairs)(upper, lower, count, out);
-}
+TEX_KERNEL(void, average_pairs, AveragePairs, (const float* upper, const float* lower, int count, float* out),
+           (upper, lower, count, out))
 
 }  // namespace tex::inline v1
 #endif

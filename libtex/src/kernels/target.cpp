@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -30,9 +32,7 @@ double TimerResolution() { return 1e-8; }
 
 namespace tex::inline v1 {
 
-HWY_EXPORT(KernelTarget);
-
-std::int64_t kernel_target() { return HWY_DYNAMIC_DISPATCH(KernelTarget)(); }
+TEX_KERNEL(std::int64_t, kernel_target, KernelTarget, (), ())
 
 const char* kernel_target_name() { return hwy::TargetName(kernel_target()); }
 

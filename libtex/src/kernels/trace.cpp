@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/trace_boxes-inl.h"
 #include "kernels/trace_packet-inl.h"
 #include "kernels/trace_triangles-inl.h"
@@ -148,16 +149,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(TraceRays);
-HWY_EXPORT(FindBlocked);
+TEX_KERNEL(std::int64_t, trace_rays, TraceRays,
+           (const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits), (tree, rays, count, hits))
 
-std::int64_t trace_rays(const TreeView& tree, const Ray* rays, std::size_t count, RayHit* hits) {
-    return HWY_DYNAMIC_DISPATCH(TraceRays)(tree, rays, count, hits);
-}
-
-std::int64_t find_blocked(const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked) {
-    return HWY_DYNAMIC_DISPATCH(FindBlocked)(tree, rays, count, blocked);
-}
+TEX_KERNEL(std::int64_t, find_blocked, FindBlocked,
+           (const TreeView& tree, const Ray* rays, std::size_t count, std::uint8_t* blocked),
+           (tree, rays, count, blocked))
 
 }  // namespace tex::inline v1
 #endif  // HWY_ONCE

@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
 #include "kernels/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -94,12 +95,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(UnpackRow);
-
-void unpack_row(const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
-                float* out_y, float* out_z) {
-    HWY_DYNAMIC_DISPATCH(UnpackRow)(x, y, z, rule, count, out_x, out_y, out_z);
-}
+TEX_KERNEL(void, unpack_row, UnpackRow,
+           (const float* x, const float* y, const float* z, const UnpackRule& rule, int count, float* out_x,
+            float* out_y, float* out_z),
+           (x, y, z, rule, count, out_x, out_y, out_z))
 
 }  // namespace tex::inline v1
 #endif

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "kernels/dispatch.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tex::inline v1 {
 namespace HWY_NAMESPACE {
@@ -113,18 +115,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 
-HWY_EXPORT(PredictZipBytes);
-HWY_EXPORT(RestoreZipBytes);
+TEX_KERNEL(void, predict_zip_bytes, PredictZipBytes, (const std::byte* bytes, std::size_t count, std::byte* out),
+           (reinterpret_cast<const std::uint8_t*>(bytes), count, reinterpret_cast<std::uint8_t*>(out)))
 
-void predict_zip_bytes(const std::byte* bytes, std::size_t count, std::byte* out) {
-    HWY_DYNAMIC_DISPATCH(PredictZipBytes)
-    (reinterpret_cast<const std::uint8_t*>(bytes), count, reinterpret_cast<std::uint8_t*>(out));
-}
-
-void restore_zip_bytes(const std::byte* differences, std::size_t count, std::byte* out) {
-    HWY_DYNAMIC_DISPATCH(RestoreZipBytes)
-    (reinterpret_cast<const std::uint8_t*>(differences), count, reinterpret_cast<std::uint8_t*>(out));
-}
+TEX_KERNEL(void, restore_zip_bytes, RestoreZipBytes, (const std::byte* differences, std::size_t count, std::byte* out),
+           (reinterpret_cast<const std::uint8_t*>(differences), count, reinterpret_cast<std::uint8_t*>(out)))
 
 }  // namespace tex::inline v1
 #endif
