@@ -155,7 +155,7 @@ Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes) const {
     const cli::MeshSpace& low = meshes.low;
     const cli::HighParts& high = *meshes.high;
-    high_.compare(job, low.selected().part, high.parts);
+    high_.compare(job, low.selected().part, high);
     job.report["tangents"] = name_of(kTangentSourceNames, low.source());
     TransferInputs inputs;
     if (const MeshPart& rest = low.selected().rest; !rest.indices.empty()) inputs.around = &rest;
@@ -171,6 +171,7 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshe
     if (!pictures) return pictures.error();
     inputs.high_details = pictures->details;
     ids_.number(high, inputs);
+    inputs.high_places = high.places;
     TransferOptions with = rays_.transfer();
     if (guides_.wants_straight()) with.rays = RayMode::straight;
     maps_.request(with);

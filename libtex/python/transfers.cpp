@@ -69,6 +69,7 @@ struct GivenInputs {
     py::object around = py::none();
     py::object cage = py::none(), skew = py::none(), offset = py::none();
     py::object low_groups = py::none(), high_groups = py::none(), high_ids = py::none(), high_details = py::none();
+    py::object high_places = py::none();
 };
 
 template <class F>
@@ -81,6 +82,7 @@ void each_field(GivenInputs& o, F& f) {
     f("high_groups", o.high_groups, "Sequence[int] | None");
     f("high_ids", o.high_ids, "Sequence[int] | None");
     f("high_details", o.high_details, "Sequence[dict[str, Any] | None] | None");
+    f("high_places", o.high_places, "Sequence[dict[str, Any]] | None");
 }
 
 std::vector<py::object> sequence_from(py::handle given, std::string_view name, std::string_view wanted) {
@@ -100,6 +102,29 @@ std::vector<int> numbers_from(py::handle given, std::string_view name) {
     return numbers;
 }
 
+PartPlace place_from(const py::object& item) {
+    PartPlace place;
+    if (!py::isinstance<py::dict>(item)) raise_type("high_places", "a dict for each place", item);
+    for (const auto& [key, value] : item.cast<py::dict>()) {
+        const std::string name = text_from(key, "high_places");
+        if (name == "part") {
+            const std::int64_t part = Convert<std::int64_t>::from(value, name);
+            need(part >= 0, name, "must be 0 or more");
+            place.part = static_cast<std::size_t>(part);
+        } else if (name == "name") {
+            place.name = text_from(value, name);
+        } else if (name == "to_scene") {
+            const char* const wanted = "must be 12 numbers, the rows of a 3x4 matrix";
+            const std::vector<py::object> numbers = sequence_from(value, name, "12 numbers");
+            need(numbers.size() == place.to_scene.size(), name, wanted);
+            for (std::size_t k = 0; k < numbers.size(); ++k) place.to_scene[k] = number_from(numbers[k], name);
+        } else {
+            raise_value("high_places", shown_text(name) + " must be one of 'part', 'name', 'to_scene'");
+        }
+    }
+    return place;
+}
+
 // TransferInputs with what they refer to.
 struct OwnInputs {
     TransferInputs inputs;
@@ -116,6 +141,10 @@ struct OwnInputs {
         inputs.low_groups = numbers_from(given.low_groups, "low_groups");
         inputs.high_groups = numbers_from(given.high_groups, "high_groups");
         inputs.high_ids = numbers_from(given.high_ids, "high_ids");
+        if (!given.high_places.is_none()) {
+            for (const py::object& item : sequence_from(given.high_places, "high_places", "a sequence of dicts"))
+                inputs.high_places.push_back(place_from(item));
+        }
         if (given.high_details.is_none()) return;
         for (const py::object& item : sequence_from(given.high_details, "high_details", "a sequence of dicts"))
             add_detail(item);
@@ -224,18 +253,38 @@ std::vector<std::string> names_from(py::handle given, std::string_view name) {
     return names;
 }
 
+std::size_t most_from(Call& call) {
+    if (!call.has("most")) return kMaxCopied;
+    return static_cast<std::size_t>(std::max<std::int64_t>(0, Convert<std::int64_t>::from(call["most"], "most")));
+}
+
 void add_helpers(Module& module) {
     module.verb<>("parts_in_scene", {{"mesh", "Mesh"}, {"most", "int", std::to_string(kMaxCopied)}}, "list[MeshPart]",
                   "", [](Call& call) -> py::object {
                       const Mesh& mesh = mesh_from(call["mesh"], "mesh");
-                      std::size_t most = kMaxCopied;
-                      if (call.has("most"))
-                          most = static_cast<std::size_t>(
-                              std::max<std::int64_t>(0, Convert<std::int64_t>::from(call["most"], "most")));
+                      const std::size_t most = most_from(call);
                       py::list list;
                       for (MeshPart& part : value_of(without_gil([&] { return parts_in_scene(mesh, most); })))
                           list.append(py::cast(std::make_shared<MeshPart>(std::move(part))));
                       return list;
+                  });
+    module.verb<>("places_in_scene", {{"mesh", "Mesh"}, {"most", "int", std::to_string(kMaxCopied)}},
+                  "tuple[list[MeshPart], list[dict[str, Any]]]",
+                  "The parts, and a dict of the fields of PartPlace for each place.", [](Call& call) -> py::object {
+                      const Mesh& mesh = mesh_from(call["mesh"], "mesh");
+                      SceneParts scene =
+                          value_of(without_gil([&, most = most_from(call)] { return places_in_scene(mesh, most); }));
+                      py::list parts, places;
+                      for (MeshPart& part : scene.parts)
+                          parts.append(py::cast(std::make_shared<MeshPart>(std::move(part))));
+                      for (const PartPlace& place : scene.places) {
+                          py::dict item;
+                          item["part"] = place.part;
+                          item["name"] = strs_of({place.name})[0];
+                          item["to_scene"] = place.to_scene;
+                          places.append(item);
+                      }
+                      return py::make_tuple(parts, places);
                   });
     module.verb<>("match_names", {{"low", "Sequence[str]"}, {"high", "Sequence[str]"}}, "dict[str, Any]",
                   "A dict of the fields of MatchedNames.", [](Call& call) -> py::object {

@@ -316,18 +316,15 @@ Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh, std::size_t most) {
         if (mesh.nodes.empty()) return std::move(mesh.parts);
         const ShownParts shown(mesh);
         if (auto fits = shown.check(most); !fits) return fits.error();
-        std::vector<MeshPart> parts;
-        for (MeshPart& part : mesh.parts) {
-            const std::vector<const MeshNode*>& nodes = shown.nodes_of(part);
-            for (std::size_t k = 0; k < nodes.size(); ++k) {
-                auto in_place = in_scene(k + 1 < nodes.size() ? MeshPart(part) : std::move(part), *nodes[k]);
-                if (!in_place) return in_place.error();
-                if (!nodes[k]->name.empty()) in_place->name = nodes[k]->name;
-                parts.push_back(std::move(*in_place));
-            }
-        }
-        if (parts.empty()) return Error{ErrorCode::bad_data, {}, "its scene shows no mesh"};
-        return parts;
+        return copies_of_shown(mesh, shown);
+    });
+}
+
+Result<SceneParts> places_in_scene(Mesh mesh, std::size_t most) {
+    return no_throw([&]() -> Result<SceneParts> {
+        if (mesh.nodes.empty()) return SceneParts{std::move(mesh.parts), {}};
+        const ShownParts shown(mesh);
+        return places_of_shown(mesh, shown, most);
     });
 }
 

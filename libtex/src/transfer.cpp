@@ -99,10 +99,14 @@ std::string plain(double value) {
 // Whether any triangle has.
 bool has_area(const RayGroups& groups) {
     for (const RayGroup& group : groups.all()) {
-        for (std::size_t t = 0; t < group.triangles.count(); ++t) {
-            const auto corners = group.triangles.at(t).corners();
-            const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-            if (dot(normal, normal) > 0.0) return true;
+        const MeshPart* last = nullptr;
+        for (const MeshPart* part : group.triangles.parts()) {
+            if (part == std::exchange(last, part)) continue;  // in several places
+            for (std::size_t t = 0; t < part->triangles(); ++t) {
+                const auto corners = Triangles::Triangle{*part, t}.corners();
+                const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+                if (dot(normal, normal) > 0.0) return true;
+            }
         }
     }
     return false;
@@ -164,6 +168,13 @@ void make_room(Extent extent, const TransferOptions& options, TransferredMaps& r
     if (options.occlusion) result.occlusion = Plane<float>(extent);
     if (options.bent) result.bent = NormalMap(extent);
     if (options.thickness) result.thickness = Plane<float>(extent);
+}
+
+Result<void> check_places(const TransferInputs& inputs, const std::vector<MeshPart>& high) {
+    for (const PartPlace& place : inputs.high_places) {
+        if (place.part >= high.size()) return bad_option("high_places: the high mesh has no such part");
+    }
+    return {};
 }
 
 Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const std::vector<MeshPart>& high,
@@ -245,7 +256,9 @@ Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low, const s
             if (auto sound = check_part(part); !sound) return sound.error();
         }
         if (const auto checked = check_space(low); !checked) return checked.error().of(low.file);
-        if (auto fit = check_inputs(inputs, low.part, high.size(), options.rays); !fit) return fit.error();
+        if (auto fit = check_places(inputs, high); !fit) return fit.error();
+        const std::size_t standing = inputs.high_places.empty() ? high.size() : inputs.high_places.size();
+        if (auto fit = check_inputs(inputs, low.part, standing, options.rays); !fit) return fit.error();
         if (auto fit = check_details(inputs, high); !fit) return fit.error();
         auto result = cast_all(extent, low, high, inputs, options, execution);
         if (!result) return result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,14 +21,41 @@ namespace tex::cli {
 std::string quoted_list(const std::vector<std::string>& names) {
     constexpr std::size_t kMost = 6;
     std::vector<std::string> once;
+    std::set<std::string> seen;
     for (const std::string& name : names) {
-        if (std::find(once.begin(), once.end(), name) == once.end()) once.push_back(name);
+        if (seen.insert(name).second) once.push_back(name);
     }
     std::string text;
     for (std::size_t k = 0; k < std::min(kMost, once.size()); ++k)
         text += fmt::format("{}\"{}\"", k == 0 ? "" : ", ", printable(once[k]));
     if (once.size() > kMost) text += fmt::format(" and {} more", once.size() - kMost);
     return text;
+}
+
+std::size_t HighParts::triangles() const {
+    std::size_t sum = 0;
+    for (std::size_t k = 0; k < standing(); ++k) sum += parts[part_of(k)].triangles();
+    return sum;
+}
+
+// places_in_scene() has tried all of them, so that in_scene() fails only without memory; then the part is left out.
+void HighParts::visit_standing(const std::function<void(const MeshPart&)>& visit) const {
+    for (std::size_t k = 0; k < parts.size() && places.empty(); ++k) visit(parts[k]);
+    for (const PartPlace& place : places) {
+        const auto placed = in_scene(parts[place.part], {place.name, 0, place.to_scene});
+        if (placed) visit(*placed);
+    }
+}
+
+void HighParts::add_places(const std::vector<MeshPart>& added, std::vector<PartPlace> of_added) {
+    const std::size_t first = parts.size();
+    if (of_added.empty() && places.empty()) return;
+    for (std::size_t k = places.empty() ? 0 : first; k < first; ++k) places.push_back({k, parts[k].name});
+    for (std::size_t k = 0; k < added.size() && of_added.empty(); ++k) places.push_back({first + k, added[k].name});
+    for (PartPlace& place : of_added) {
+        place.part += first;
+        places.push_back(std::move(place));
+    }
 }
 
 void HighMeshes::add(Command& command) {
@@ -120,9 +148,10 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         }
         const std::vector<MeshMaterial> materials = mesh->materials;
         units_.place(*mesh);
-        auto placed = parts_in_scene(std::move(*mesh), static_cast<std::size_t>(most_));
+        auto placed = places_in_scene(std::move(*mesh), static_cast<std::size_t>(most_));
         if (!placed) return with_limit(placed.error()).of(name);
-        for (MeshPart& part : *placed) {
+        high.add_places(placed->parts, std::move(placed->places));
+        for (MeshPart& part : placed->parts) {
             const bool has_material = part.material >= 0 && static_cast<std::size_t>(part.material) < materials.size();
             high.materials.push_back(has_material ? materials[static_cast<std::size_t>(part.material)].name : "");
             high.files.push_back(file);
@@ -139,8 +168,8 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
     std::vector<std::string> low_names, high_names;
     for (const SelectedPiece& piece : low.pieces)
         low_names.push_back(match_ == Match::name ? piece.name : piece.material);
-    for (std::size_t k = 0; k < high.parts.size(); ++k)
-        high_names.push_back(match_ == Match::name ? high.parts[k].name : high.materials[k]);
+    for (std::size_t k = 0; k < high.standing(); ++k)
+        high_names.push_back(match_ == Match::name ? high.name_of(k) : high.materials[high.part_of(k)]);
     const MatchedNames matched = match_names(low_names, high_names);
     job.report["match"] = {{"lone_low", matched.lone_low}, {"lone_high", matched.lone_high}};
     const std::string what = match_ == Match::name ? "part" : "material";
@@ -177,12 +206,11 @@ Error HighMeshes::with_order(const Error& error) {
     return {error.code, error.file, error.reason + "; is it the high mesh? The low one comes first"};
 }
 
-void HighMeshes::compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high) const {
-    std::size_t triangles = 0;
-    for (const MeshPart& part : high) triangles += part.triangles();
+void HighMeshes::compare(Job& job, const MeshPart& low, const HighParts& high) const {
+    const std::size_t triangles = high.triangles();
     job.report["triangles"] = {{"low", low.triangles()}, {"high", triangles}};
     const bool is_known = !units_.is_plain() || job.task.is_tile_of_mesh();
-    const auto units = is_known ? std::nullopt : fitting_units(low, high);
+    const auto units = is_known ? std::nullopt : fitting_units(low, high.parts, high.places);
     if (units) {
         job.warn(
             fmt::format("both meshes differ in unit or axes, and would fit with {} (FBX files are in centimetres, glTF "

@@ -4,7 +4,9 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -33,8 +35,22 @@ struct HighParts {
     std::vector<MeshPart> parts;
     std::vector<std::string> materials;  // their names; may be empty
     std::vector<int> files;              // the number of the file
+    std::vector<PartPlace> places;       // where they stand; empty: where they are stored (TransferInputs::high_places)
     std::vector<std::string> names;      // of the files
     std::vector<FileWarning> remarks;    // what may matter about them
+
+    // What rays tell apart: the places, or else the parts.
+    [[nodiscard]] std::size_t standing() const { return places.empty() ? parts.size() : places.size(); }
+    [[nodiscard]] std::size_t part_of(std::size_t k) const { return places.empty() ? k : places[k].part; }
+    [[nodiscard]] const std::string& name_of(std::size_t k) const {
+        return places.empty() ? parts[k].name : places[k].name;
+    }
+    // In all places.
+    [[nodiscard]] std::size_t triangles() const;
+    // Calls visit(part) with each where it stands, of which there is one copy at a time.
+    void visit_standing(const std::function<void(const MeshPart&)>& visit) const;
+    // Adds what places_in_scene() says of parts that are still to be added.
+    void add_places(const std::vector<MeshPart>& added, std::vector<PartPlace> of_added);
 };
 
 // The first names, each once, in quotes, for a message.
@@ -70,10 +86,10 @@ public:
     // An error about the low mesh, with the remedy if both may have changed places.
     [[nodiscard]] static Error with_order(const Error& error);
     // Warns if the low mesh has more than twice as many triangles as the high ones, or another unit or other axes.
-    void compare(Job& job, const MeshPart& low, const std::vector<MeshPart>& high) const;
+    void compare(Job& job, const MeshPart& low, const HighParts& high) const;
 
 private:
-    // An error of parts_in_scene(), with the remedy if there are too many copies.
+    // An error of places_in_scene(), with the remedy if there are too many copies.
     [[nodiscard]] Error with_limit(const Error& error) const;
     [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
     [[nodiscard]] Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,

@@ -34,6 +34,17 @@ struct Box {
             include({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
         }
     }
+    void include(const Box& box, const std::array<double, 12>& to_scene) {
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            std::array<double, 3> p{};
+            for (std::size_t row = 0; row < 3; ++row) {
+                p[row] = to_scene[4 * row + 3];
+                for (std::size_t k = 0; k < 3; ++k)
+                    p[row] += to_scene[4 * row + k] * ((corner >> k & 1) != 0 ? box.high[k] : box.low[k]);
+            }
+            include(p);
+        }
+    }
     [[nodiscard]] Box with(const MeshUnits& units) const {
         Box box;
         box.include(units.of(low));
@@ -87,10 +98,13 @@ std::string MeshUnits::arguments() const {
     return text;
 }
 
-std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high) {
+std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high,
+                                       const std::vector<PartPlace>& places) {
     Box low_box, high_box;
     low_box.include(low);
-    for (const MeshPart& part : high) high_box.include(part);
+    std::vector<Box> boxes(places.empty() ? 0 : high.size());
+    for (std::size_t k = 0; k < high.size(); ++k) (places.empty() ? high_box : boxes[k]).include(high[k]);
+    for (const PartPlace& place : places) high_box.include(boxes[place.part], place.to_scene);
     const double diagonal = low_box.diagonal();
     if (low_box.distance(high_box) <= kFar * diagonal) return std::nullopt;
     std::optional<MeshUnits> best;

@@ -35,6 +35,8 @@ struct MeshUnits {
 };
 
 // The units with which the box of the high mesh is that of the low one, nearly, if both are far apart without them.
-[[nodiscard]] std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high);
+// Parts with places stand there; of each, the box of its own box counts.
+[[nodiscard]] std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high,
+                                                     const std::vector<PartPlace>& places = {});
 
 }  // namespace tex::cli

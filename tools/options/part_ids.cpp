@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -48,28 +50,29 @@ void PartIds::add(Command& command, const FileOptions& files) {
 
 std::string PartIds::name_of_part(const HighParts& high, std::size_t part) const {
     switch (by_) {
-        case IdBy::part: return high.parts[part].name;
-        case IdBy::material: return high.materials[part];
+        case IdBy::part: return high.name_of(part);
+        case IdBy::material: return high.materials[high.part_of(part)];
         case IdBy::mesh: break;
     }
-    return high.names[static_cast<std::size_t>(high.files[part])];
+    return high.names[static_cast<std::size_t>(high.files[high.part_of(part)])];
 }
 
 std::vector<std::string> PartIds::names_of(const HighParts& high) const {
     std::vector<std::string> names;
-    for (std::size_t k = 0; k < high.parts.size(); ++k) {
+    std::set<std::string> seen;
+    for (std::size_t k = 0; k < high.standing(); ++k) {
         std::string name = name_of_part(high, k);
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+        if (seen.insert(name).second) names.push_back(std::move(name));
     }
     return names;
 }
 
 void PartIds::number(const HighParts& high, TransferInputs& inputs) const {
     if (!output_.is_given()) return;
-    const std::vector<std::string> names = names_of(high);
-    for (std::size_t k = 0; k < high.parts.size(); ++k) {
-        const auto at = std::find(names.begin(), names.end(), name_of_part(high, k));
-        inputs.high_ids.push_back(static_cast<std::int32_t>(at - names.begin()));
+    std::map<std::string, std::int32_t> numbers;
+    for (std::size_t k = 0; k < high.standing(); ++k) {
+        const auto next = static_cast<std::int32_t>(numbers.size());
+        inputs.high_ids.push_back(numbers.emplace(name_of_part(high, k), next).first->second);
     }
 }
 

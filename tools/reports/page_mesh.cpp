@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace tex::cli {
 namespace {
@@ -50,22 +51,24 @@ Point normal_at(const MeshPart& part, std::size_t triangle, std::size_t corner) 
     return unit_of(point_of(part.normals[part.indices[3 * triangle + corner]]));
 }
 
-MeshPart joined_parts(const std::vector<MeshPart>& parts) {
+using VisitAll = std::function<void(const VisitPart&)>;
+
+MeshPart joined_parts(const VisitAll& visit_all) {
     MeshPart all;
-    for (const MeshPart& part : parts) {
+    visit_all([&all](const MeshPart& part) {
         const auto first = static_cast<std::uint32_t>(all.positions.size());
         if (!part.normals.empty()) {
             all.positions.insert(all.positions.end(), part.positions.begin(), part.positions.end());
             all.normals.insert(all.normals.end(), part.normals.begin(), part.normals.end());
             for (const std::uint32_t v : part.indices) all.indices.push_back(first + v);
-            continue;
+            return;
         }
         for (std::size_t k = 0; k < part.indices.size(); ++k) {
             all.positions.push_back(part.positions[part.indices[k]]);
             all.normals.push_back(rounded_point(normal_at(part, k / 3, k % 3)));
             all.indices.push_back(first + static_cast<std::uint32_t>(k));
         }
-    }
+    });
     return all;
 }
 
@@ -84,9 +87,10 @@ struct Bounds {
     double area = 0.0;
     std::size_t triangles = 0;
 
-    explicit Bounds(const std::vector<MeshPart>& parts) {
-        low = high = point_of(parts.front().positions[parts.front().indices.front()]);
-        for (const MeshPart& part : parts) {
+    explicit Bounds(const VisitAll& visit_all) {
+        low.fill(std::numeric_limits<double>::infinity());
+        high.fill(-std::numeric_limits<double>::infinity());
+        visit_all([this](const MeshPart& part) {
             for (const std::uint32_t v : part.indices) {
                 const Point p = point_of(part.positions[v]);
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -96,7 +100,7 @@ struct Bounds {
             }
             for (std::size_t t = 0; t < part.triangles(); ++t) area += 0.5 * length_of(area_of(part, t));
             triangles += part.triangles();
-        }
+        });
     }
     [[nodiscard]] double side() const {
         return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 1e-30});
@@ -200,21 +204,28 @@ MeshPart with_uvs(MeshPart part) {
 }  // namespace
 
 MeshPart page_mesh(const std::vector<MeshPart>& parts, std::size_t most) {
-    const Bounds bounds(parts);
-    if (bounds.triangles <= most) return with_uvs(joined_parts(parts));
+    return page_mesh_of([&](const VisitPart& visit) { std::for_each(parts.begin(), parts.end(), visit); }, most);
+}
+
+MeshPart page_mesh_of(const VisitAll& visit_all, std::size_t most) {
+    const Bounds bounds(visit_all);
+    if (bounds.triangles <= most) return with_uvs(joined_parts(visit_all));
     // A surface crosses about area / cell^2 cells, and has about two triangles in each.
     const double wanted = bounds.side() * std::sqrt(static_cast<double>(most) / std::max(2.0 * bounds.area, 1e-30));
     int cells = static_cast<int>(std::clamp(1.25 * wanted, 2.0, static_cast<double>(kMostCells)));
     for (;; cells = std::max(2, cells * 4 / 5)) {
         Grid grid(bounds, cells);
-        for (const MeshPart& part : parts) grid.add(part);
+        visit_all([&grid](const MeshPart& part) { grid.add(part); });
         if (grid.triangles() > most && cells > 2) continue;
         if (grid.triangles() > 0) return with_uvs(grid.finish(most));
         // All of it is in too few cells, such as needles: some triangles as they are.
-        MeshPart some = parts.front();
+        MeshPart some;
+        visit_all([&](const MeshPart& part) {
+            if (some.indices.empty()) some = part;
+        });
         some.indices.resize(std::min(some.indices.size(), 3 * most));
         some.quads.clear();
-        return with_uvs(joined_parts({some}));
+        return with_uvs(joined_parts([&some](const VisitPart& visit) { visit(some); }));
     }
 }
 

@@ -39,12 +39,6 @@ std::string percent_text(std::int64_t part, std::int64_t whole) {
                        whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
-std::size_t triangles_of(const HighParts& high) {
-    std::size_t sum = 0;
-    for (const MeshPart& part : high.parts) sum += part.triangles();
-    return sum;
-}
-
 // The mesh as preview() draws one: with a flat map.
 Result<HtmlPicture> still_of(const MeshPart& part, const std::vector<Float4>& tangents, int size,
                              const std::string& caption, const Execution& execution) {
@@ -70,7 +64,7 @@ std::string facts_of(const TransferReport::Entry& entry) {
     text += dl_row("low mesh", fmt::format("{}, {} triangles", printable(entry.low.file()),
                                            with_commas(entry.low.selected().part.triangles())));
     for (const std::string& name : entry.high.names) text += dl_row("high mesh", printable(name));
-    text += dl_row("", fmt::format("{} triangles", with_commas(triangles_of(entry.high))));
+    text += dl_row("", fmt::format("{} triangles", with_commas(entry.high.triangles())));
     text += dl_row("map", fmt::format("{} x {}, {}, {}", extent.width, extent.height,
                                       name_of(kFormatNames, entry.texture.format), layout_name(entry.texture.swizzle)));
     text += dl_row("decoder", std::string(name_of(kDecoderNames, entry.low.decoder())));
@@ -138,8 +132,9 @@ void TransferReport::check(const std::vector<Task>& tasks, std::vector<NamedFile
 
 Result<HtmlBeside> TransferReport::beside(const Entry& entry, const HtmlSizes& sizes,
                                           const Execution& execution) const {
-    const std::size_t triangles = triangles_of(entry.high), most = std::max<std::size_t>(1000, kPageTriangles / maps_);
-    const MeshPart part = page_mesh(entry.high.parts, most);
+    const std::size_t triangles = entry.high.triangles(), most = std::max<std::size_t>(1000, kPageTriangles / maps_);
+    const auto visit_high = [&](const VisitPart& visit) { entry.high.visit_standing(visit); };
+    const MeshPart part = page_mesh_of(visit_high, most);
     const std::vector<Float4> tangents(part.indices.size(), Float4{1.0f, 0.0f, 0.0f, 1.0f});
     auto still = still_of(part, tangents, sizes.lit, "the high mesh", execution);
     if (!still) return still.error();
@@ -185,7 +180,7 @@ Result<void> TransferReport::add(Job& job, const Entry& entry) {
     page.row = fmt::format("<td><span class=\"chip {}\">{}</span></td>", page.words,
                            percent_text(entry.maps.missed, entry.maps.covered));
     for (const std::string& cell :
-         {with_commas(entry.low.selected().part.triangles()), with_commas(triangles_of(entry.high)),
+         {with_commas(entry.low.selected().part.triangles()), with_commas(entry.high.triangles()),
           fmt::format("{} x {}", extent.width, extent.height),
           std::string(name_of(kFormatNames, entry.texture.format))})
         page.row += fmt::format("<td>{}</td>", html_text(cell));

@@ -275,6 +275,32 @@ inline constexpr std::size_t kMaxCopied = std::size_t{1} << 24;
 //         out_of_memory
 [[nodiscard]] TEX_API Result<std::vector<MeshPart>> parts_in_scene(Mesh mesh, std::size_t most = kMaxCopied);
 
+// A place in the scene where a part stands.
+struct PartPlace {
+    std::size_t part = 0;  // an index into the parts
+    std::string name;      // of the node that shows it, if that has one, else of the part
+    std::array<double, 12> to_scene = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // as that of MeshNode
+};
+
+// Parts, and where they stand.
+struct SceneParts {
+    std::vector<MeshPart> parts;
+    std::vector<PartPlace> places;  // empty: each part stands once, where it is stored
+};
+
+// Copies of parts with fewer triangles than this, together, are made: rays are faster, and the memory does not matter.
+inline constexpr std::size_t kFewCopied = std::size_t{1} << 18;
+
+// As parts_in_scene(), but parts that nodes show more than once are not copied if that would make kFewCopied triangles
+// or more, so that a forest takes as much memory as one tree: they stay in their own space, for
+// TransferInputs::high_places. Parts that are shown once have a place there, too, and are moved. If no part is shown
+// more than once, or copies are made, the parts are those of parts_in_scene(), and there are no places.
+//
+// `most` limits copies and places of parts that are shown more than once, alone: a place counts as 16 triangles.
+//
+// Preconditions, errors: as parts_in_scene().
+[[nodiscard]] TEX_API Result<SceneParts> places_in_scene(Mesh mesh, std::size_t most = kMaxCopied);
+
 // Which names belong together: numbers for TransferInputs.
 struct MatchedNames {
     std::vector<int> low, high;                    // the number of each name; equal numbers belong together
@@ -708,6 +734,11 @@ struct TransferInputs {
     std::vector<HighDetail> high_details;
     // Counts rays while they are cast; may be null.
     std::atomic<std::int64_t>* rays = nullptr;
+    // Where parts of the high mesh stand, any number of times: see places_in_scene(). Then `high_groups` and `high_ids`
+    // have a number for each place; `high_details` are of the parts, with tangents of their own space. Rays hit exactly
+    // what they would hit if there were copies of the parts in this order. If there are more than 2^24 vertices in all
+    // places, automatic reach looks at some of them. Empty: each part stands once, where it is stored.
+    std::vector<PartPlace> high_places = {};
 };
 
 // Makes the maps of the low mesh. `high`: the triangles that rays hit, in the same space as `low.part`. Parts need
@@ -718,16 +749,17 @@ struct TransferInputs {
 //                      of UVs, not as many tangents as corners; its triangles cover no texel of the map; `high` is
 //                      empty; no ray hits anything (the reason says how far apart the meshes are); the cage has other
 //                      triangles; a skew or offset is empty, negative or not finite; groups, ids or details do not fit
-//                      the meshes
-//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`; so many triangles lie over
-//                      each other, or are so long and thin, that rays would be tested against thousands of them: on
-//                      average, 512 rays in a row take more than 4096 looks at boxes or at four triangles
+//                      the meshes; a place is of no part
+//         unsupported  as to_tangent_space(); more than kMaxTriangles triangles in `high`, or more than 2^32 - 2 in all
+//                      its places; so many triangles lie over each other, or are so long and thin, that rays would be
+//                      tested against thousands of them: on average, 512 rays in a row take more than 4096 looks at
+//                      boxes or at four triangles
 //         out_of_memory, cancelled
 // The time of a ray is limited by that, whatever the meshes are. Copies of a triangle cost nothing.
 // The same bytes for every number of threads, processor and compiler.
 // Memory: 13 bytes for each texel, 12 more for object space, positions, bent normals and colours, 4 for heights,
 // occlusion and thickness, and 4 while borders are filled; about 100 bytes for each triangle of the high mesh (twice
-// that for groups with second rays) and 200 for each of the low one.
+// that for groups with second rays) and 200 for each of the low one; and about 700 for each of high_places.
 [[nodiscard]] TEX_API Result<TransferredMaps> transfer(Extent extent, const TangentSpace& low,
                                                        const std::vector<MeshPart>& high,
                                                        const TransferOptions& options = {},

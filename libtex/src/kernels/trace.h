@@ -46,11 +46,26 @@ inline constexpr double kBoxSlack = 0x1p-20;
 // How deep boxes may lie in each other.
 inline constexpr int kMostLevels = 64;
 
+struct PlacedTree;
 struct TreeView {
     const Boxes* boxes = nullptr;  // the first one holds all others
     const TriangleGroup* groups = nullptr;
     double center[3] = {};  // (place - center) * scale lies in [-1, 1]; scale is a power of two
     double scale = 1.0;
+    const PlacedTree* places = nullptr;  // if there are any, children with kGroupBit are places instead of groups
+};
+
+// A tree whose triangles stand somewhere else. Each corner is moved and rounded to float as in_scene() of mesh.h does
+// it, so that a ray hits exactly what it would hit if there were a copy of the mesh; only boxes are tested in the space
+// of the mesh, to which the ray is brought. The rounding of corners moves them there by less than `slack`.
+struct PlacedTree {
+    TreeView tree;          // of the mesh
+    double to_scene[3][4];  // rows
+    double to_mesh[3][3];   // the inverse of its first three columns
+    double slack[3];        // in the unit of the mesh
+    std::uint32_t first;    // the number of its first triangle
+    bool is_mirrored;       // the second and the third corner change places
+    bool is_plain;          // triangles stand where they are stored, and have numbers of their own: the rest is unused
 };
 
 // Which triangles a ray hits: those whose corners it sees counter-clockwise, clockwise, or all.

@@ -45,6 +45,18 @@ struct BoxRay {
     void shorten(double t) { most = static_cast<float>(std::min(end, t * to_units) * (1.0 + kBoxSlack)); }
 };
 
+// What the ray needs along an axis; `direction` is that of a vector of unit length.
+HWY_INLINE void set_axis(int k, double origin, double direction, double slack, BoxRay& box) {
+    const double away = std::max(std::abs(direction), kLeastDirection);
+    const bool forward = !(direction < -kLeastDirection);
+    if (!forward) slack = -slack;
+    box.near_origin[k] = static_cast<float>(origin + slack);
+    box.far_origin[k] = static_cast<float>(origin - slack);
+    box.inverse[k] = static_cast<float>(forward ? 1.0 / away : -1.0 / away);
+    box.near_row[k] = static_cast<std::size_t>(forward ? k : k + 3);
+    box.far_row[k] = static_cast<std::size_t>(forward ? k + 3 : k);
+}
+
 // Returns false if the ray hits nothing.
 HWY_INLINE bool prepare(const TreeView& tree, const Ray& ray, BoxRay& box) {
     double origin[3], largest = 1.0;
@@ -53,17 +65,7 @@ HWY_INLINE bool prepare(const TreeView& tree, const Ray& ray, BoxRay& box) {
         largest = std::max(largest, std::abs(origin[k]));
         if (!(std::abs(origin[k]) < 1e30)) return false;
     }
-    for (int k = 0; k < 3; ++k) {
-        const double d = ray.direction[k];
-        const double away = std::max(std::abs(d), kLeastDirection);
-        const bool forward = !(d < -kLeastDirection);
-        const double slack = forward ? kBoxSlack * largest : -kBoxSlack * largest;
-        box.near_origin[k] = static_cast<float>(origin[k] + slack);
-        box.far_origin[k] = static_cast<float>(origin[k] - slack);
-        box.inverse[k] = static_cast<float>(forward ? 1.0 / away : -1.0 / away);
-        box.near_row[k] = static_cast<std::size_t>(forward ? k : k + 3);
-        box.far_row[k] = static_cast<std::size_t>(forward ? k + 3 : k);
-    }
+    for (int k = 0; k < 3; ++k) set_axis(k, origin[k], ray.direction[k], kBoxSlack * largest, box);
     box.end = 8.0 * largest;
     box.to_units = tree.scale;
     box.shorten(ray.length);

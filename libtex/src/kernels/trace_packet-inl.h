@@ -120,6 +120,7 @@ HWY_INLINE unsigned rays_meeting(const Boxes& boxes, std::size_t child, const Pa
 
 // Loads what the rays come to next.
 HWY_INLINE void prefetch(const TreeView& tree, const Boxes& boxes, unsigned met) {
+    if (tree.groups == nullptr) return;  // a tree of places
     for (; met != 0; met &= met - 1) {
         const std::uint32_t child = boxes.child[std::countr_zero(met)];
         const bool is_group = (child & kGroupBit) != 0;

@@ -19,17 +19,24 @@ Result<void> check_space(const TangentSpace& space) {
 
 bool same_vectors(Decoder a, Decoder b) { return decoder_kind(a) == decoder_kind(b); }
 
+inline void CornerFrames::set(std::size_t k, const Float3& n, const Float4& t) {
+    normals_[k] = normalized(vector_of(n));
+    tangents_[k] = normalized(vector_of(Float3{t.x, t.y, t.z}));
+    signs_[k] = t.w < 0.0f ? -1.0 : 1.0;
+    bitangents_[k] = signs_[k] * cross(normals_[k], tangents_[k]);
+    if (decoder_kind(decoder_) == DecoderKind::normalized) bitangents_[k] = normalized(bitangents_[k]);
+}
+
 CornerFrames::CornerFrames(const TangentSpace& space, std::size_t triangle) : decoder_(space.decoder) {
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t corner = 3 * triangle + k;
-        const Float3& n = space.part.normals[space.part.indices[corner]];
-        const Float4& t = space.tangents[corner];
-        normals_[k] = normalized(vector_of(n));
-        tangents_[k] = normalized(vector_of(Float3{t.x, t.y, t.z}));
-        signs_[k] = t.w < 0.0f ? -1.0 : 1.0;
-        bitangents_[k] = signs_[k] * cross(normals_[k], tangents_[k]);
-        if (decoder_kind(decoder_) == DecoderKind::normalized) bitangents_[k] = normalized(bitangents_[k]);
+        set(k, space.part.normals[space.part.indices[corner]], space.tangents[corner]);
     }
+}
+
+CornerFrames::CornerFrames(const std::array<Float3, 3>& normals, const std::array<Float4, 3>& tangents, Decoder decoder)
+    : decoder_(decoder) {
+    for (std::size_t k = 0; k < 3; ++k) set(k, normals[k], tangents[k]);
 }
 
 Frame CornerFrames::at(const std::array<double, 3>& weights) const {

@@ -24,6 +24,7 @@ class CornerFrames {
 public:
     CornerFrames() = default;
     CornerFrames(const TangentSpace& space, std::size_t triangle);
+    CornerFrames(const std::array<Float3, 3>& normals, const std::array<Float4, 3>& tangents, Decoder decoder);
 
     // At the point with these weights of the corners.
     [[nodiscard]] Frame at(const std::array<double, 3>& weights) const;
@@ -31,6 +32,8 @@ public:
     [[nodiscard]] FrameCorners corners() const;
 
 private:
+    void set(std::size_t k, const Float3& n, const Float4& t);
+
     std::array<Vector3, 3> normals_, tangents_, bitangents_;
     std::array<double, 3> signs_{};
     Decoder decoder_ = Decoder::gltf;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/trace.h"
+
 namespace tex::inline v1 {
 
 struct FloatBox {
@@ -28,6 +30,26 @@ struct FloatBox {
         return x * y + (y + x) * z;
     }
 };
+
+// A box without children.
+inline Boxes no_boxes() {
+    Boxes boxes;
+    for (int k = 0; k < kBoxes; ++k) {
+        for (int axis = 0; axis < 3; ++axis) {
+            boxes.low[axis][k] = std::numeric_limits<float>::infinity();
+            boxes.high[axis][k] = -std::numeric_limits<float>::infinity();
+        }
+        boxes.child[k] = kGroupBit;
+    }
+    return boxes;
+}
+
+inline void set_box(Boxes& boxes, int k, const FloatBox& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+        boxes.low[axis][k] = box.low[axis];
+        boxes.high[axis][k] = box.high[axis];
+    }
+}
 
 struct BoxedTriangle {
     FloatBox box;

@@ -22,26 +22,6 @@ constexpr std::size_t kPiece = 1 << 13;
 // Beyond this many levels, ranges are halved by order, so that the depth stays limited.
 constexpr int kMostCuts = 32;
 
-// A box without children.
-Boxes no_boxes() {
-    Boxes boxes;
-    for (int k = 0; k < kBoxes; ++k) {
-        for (int axis = 0; axis < 3; ++axis) {
-            boxes.low[axis][k] = std::numeric_limits<float>::infinity();
-            boxes.high[axis][k] = -std::numeric_limits<float>::infinity();
-        }
-        boxes.child[k] = kGroupBit;
-    }
-    return boxes;
-}
-
-void set_box(Boxes& boxes, int k, const FloatBox& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-        boxes.low[axis][k] = box.low[axis];
-        boxes.high[axis][k] = box.high[axis];
-    }
-}
-
 struct Piece {
     std::vector<Boxes> boxes;
     std::vector<TriangleGroup> groups;
@@ -97,21 +77,13 @@ Result<void> TreeBuilder::measure(const Execution& execution) {
         if (auto done = parallel_for(execution.quiet(), count, kGrain, measure_piece); !done) return done;
         for (const FloatBox& box : pieces) all.include(box);
     }
-    const Vector3 low = vector_of(Float3{all.low[0], all.low[1], all.low[2]}),
-                  high = vector_of(Float3{all.high[0], all.high[1], all.high[2]});
-    tree_.low_ = low;
-    tree_.high_ = high;
-    tree_.center_ = 0.5 * (low + high);
-    const double half = 0.5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    int exponent = 0;
-    if (half > 0.0) std::frexp(half, &exponent);
-    tree_.scale_ = std::ldexp(1.0, -exponent);
+    tree_.set_bounds(all);
     return {};
 }
 
 FloatBox TreeBuilder::box_of(std::size_t triangle) const {
     FloatBox box;
-    for (const Vector3& corner : triangles_.at(triangle).corners()) {
+    for (const Vector3& corner : triangles_.at(triangle).stored_corners()) {
         const Vector3 p = tree_.scale_ * (corner - tree_.center_);
         const float at[3] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
         for (int k = 0; k < 3; ++k) {
@@ -143,7 +115,7 @@ void TreeBuilder::drop_copies(BoxRange& range) {
         places[k].boxed = boxed_[range.begin + k];
         const Triangles::Triangle triangle = triangles_.at(places[k].boxed.triangle);
         for (std::size_t c = 0; c < 3; ++c) {
-            const Float3& p = triangle.part.positions[triangle.vertex(c)];
+            const Float3& p = triangle.part.positions[triangle.stored_vertex(c)];
             std::memcpy(&places[k].corners[3 * c], &p, sizeof p);
         }
     }
@@ -230,7 +202,7 @@ std::uint32_t TreeBuilder::add_group(const BoxRange& range, std::vector<Triangle
         const std::uint32_t triangle = boxed_[range.begin + k].triangle;
         const Triangles::Triangle place = triangles_.at(triangle);
         for (std::size_t c = 0; c < 3; ++c) {
-            const Float3& p = place.part.positions[place.vertex(c)];
+            const Float3& p = place.part.positions[place.stored_vertex(c)];
             group.at[c][0][k] = p.x;
             group.at[c][1][k] = p.y;
             group.at[c][2][k] = p.z;
@@ -297,6 +269,18 @@ Result<void> TreeBuilder::run(const Execution& execution, ProgressSpan span) {
     return {};
 }
 
+void BoxTree::set_bounds(const FloatBox& all) {
+    const Vector3 low = vector_of(Float3{all.low[0], all.low[1], all.low[2]}),
+                  high = vector_of(Float3{all.high[0], all.high[1], all.high[2]});
+    low_ = low;
+    high_ = high;
+    center_ = 0.5 * (low + high);
+    const double half = 0.5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    int exponent = 0;
+    if (half > 0.0) std::frexp(half, &exponent);
+    scale_ = std::ldexp(1.0, -exponent);
+}
+
 Result<BoxTree> BoxTree::build(const Triangles& triangles, const Execution& execution, ProgressSpan span) {
     return no_throw([&]() -> Result<BoxTree> {
         BoxTree tree;
@@ -305,6 +289,12 @@ Result<BoxTree> BoxTree::build(const Triangles& triangles, const Execution& exec
     });
 }
 
-TreeView BoxTree::view() const { return {boxes_.data(), groups_.data(), {center_.x, center_.y, center_.z}, scale_}; }
+TreeView BoxTree::view() const {
+    return {boxes_.data(),
+            groups_.data(),
+            {center_.x, center_.y, center_.z},
+            scale_,
+            places_.empty() ? nullptr : places_.data()};
+}
 
 }  // namespace tex::inline v1

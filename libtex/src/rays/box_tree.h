@@ -7,11 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include <tex/types.h>
 
 #include "kernels/trace.h"
+#include "rays/box_cuts.h"
 #include "rays/triangles.h"
 #include "threads/parallel.h"
 
@@ -26,6 +28,8 @@ struct NearestPoint {
     std::int64_t steps = 0;  // of the search: see RayWork
 };
 
+class PartTrees;
+
 // Each box has up to eight children: it is cut in two, then its largest child, and so on. A cut is the cheapest of 16
 // places along the longest axis, or along each axis if there are few triangles, by the surface area heuristic (Wald, On
 // Fast Construction of SAH-based Bounding Volume Hierarchies, 2007). Triangles whose boxes have a common centre are
@@ -37,6 +41,13 @@ public:
     // Precondition: there is at least one triangle. Errors: out_of_memory, cancelled.
     // Memory: about 80 bytes for each triangle, and 110 more while the tree is built.
     static Result<BoxTree> build(const Triangles& triangles, const Execution& execution, ProgressSpan span = {});
+
+    // A tree of the places where parts stand, over a tree of each part that stands in several, which `shared` keeps:
+    // all rays hit what they would hit in a tree of copies. Precondition: the triangles have places. Errors: bad_data
+    // (coordinates become infinite), out_of_memory, cancelled.
+    // Memory: about 500 bytes for each place.
+    static Result<BoxTree> build_places(const Triangles& triangles, PartTrees& shared, const Execution& execution,
+                                        ProgressSpan span = {});
 
     [[nodiscard]] TreeView view() const;
 
@@ -52,10 +63,15 @@ public:
 
 private:
     friend class TreeBuilder;
+    friend class PlaceBuilder;
     [[nodiscard]] NearestPoint search(Vector3 p, double most, double enough) const;
+    // Of all triangles.
+    void set_bounds(const FloatBox& all);
 
     std::vector<Boxes> boxes_;
     std::vector<TriangleGroup> groups_;
+    std::vector<PlacedTree> places_;  // instead of groups, if there are any
+    std::vector<std::shared_ptr<const BoxTree>> below_;
     Vector3 low_, high_, center_;
     double scale_ = 1.0;
 };

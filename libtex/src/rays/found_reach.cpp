@@ -48,14 +48,42 @@ struct LowSide {
     const RayDirections& directions;
 };
 
+// The vertices of a part where it stands.
+struct StandingVertices {
+    const MeshPart& part;
+    const NodeTransform* placement;  // or null
+    std::size_t step;                // every so many of them
+
+    [[nodiscard]] int count() const { return static_cast<int>((part.positions.size() + step - 1) / step); }
+    [[nodiscard]] Vector3 at(std::size_t k) const {
+        const Float3& p = part.positions[k * step];
+        return vector_of(placement == nullptr ? p : placement->position(p));
+    }
+};
+
+// Of more vertices in all places, some are left out. Copies of a part could not have had so many.
+constexpr std::size_t kMostPlacedVertices = std::size_t{1} << 24;
+
+std::vector<StandingVertices> vertices_of(const Triangles& triangles) {
+    std::size_t all = 0;
+    for (const StandingPart& place : triangles.places()) all += place.part->positions.size();
+    const std::size_t step = all / (kMostPlacedVertices + 1) + 1;
+    std::vector<StandingVertices> vertices;
+    for (const StandingPart& place : triangles.places()) vertices.push_back({*place.part, place.placement, step});
+    if (!vertices.empty()) return vertices;
+    for (const MeshPart* part : triangles.parts()) vertices.push_back({*part, nullptr, 1});
+    return vertices;
+}
+
 // From the vertices of the high mesh to the low one. A vertex that is nearer than both distances so far changes
 // neither; mostly, the triangle near the last vertex says so.
 // Returns whether that does not cost too much.
-bool see_vertices(const MeshPart& part, int begin, int end, const LowSide& low, double most, BothSides& sides) {
+bool see_vertices(const StandingVertices& vertices, int begin, int end, const LowSide& low, double most,
+                  BothSides& sides) {
     RayWork work;
     std::uint32_t near = kNoHit;
     for (int k = begin; k < end && work.is_fair(); ++k) {
-        const Vector3 p = vector_of(part.positions[static_cast<std::size_t>(k)]);
+        const Vector3 p = vertices.at(static_cast<std::size_t>(k));
         const double known = std::min(sides.front.value(), sides.back.value());
         if (near != kNoHit &&
             nearest_on_triangle(p, Triangles::Triangle{low.part, near}.corners()).squared <= known * known)
@@ -143,14 +171,13 @@ Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& tr
     const auto low_tree = BoxTree::build(Triangles({&part}), execution);
     if (!low_tree) return low_tree.error();
     const LowSide side{part, *low_tree, triangles, directions};
-    for (const MeshPart* high : group.triangles.parts()) {
+    for (const StandingVertices& high : vertices_of(group.triangles)) {
         const auto from_high = [&](int begin, int end) {
             const int piece = begin / kVerticesPerPiece;
             if (costly_back.is_before(piece)) return;
-            if (!see_vertices(*high, begin, end, side, most, sides)) costly_back.see(piece, RaySide::low);
+            if (!see_vertices(high, begin, end, side, most, sides)) costly_back.see(piece, RaySide::low);
         };
-        const auto vertices = static_cast<int>(high->positions.size());
-        if (auto seen = parallel_for(execution, vertices, kVerticesPerPiece, from_high); !seen) return seen;
+        if (auto seen = parallel_for(execution, high.count(), kVerticesPerPiece, from_high); !seen) return seen;
         if (auto fair = costly_back.check(); !fair) return fair;
     }
     return {};

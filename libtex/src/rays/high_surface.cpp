@@ -50,6 +50,20 @@ Sampled sampled(const Triangles::Triangle& triangle, const HighSurface::Weights&
     return {extent, u * extent.width, v * extent.height};
 }
 
+// Where the part stands, normals and tangents of its own space are turned as in_scene() does it.
+CornerFrames frames_at(const Triangles::Triangle& triangle, const HighDetail& detail) {
+    const NodeTransform* const placement = triangle.placement();
+    if (placement == nullptr)
+        return {{triangle.part, *detail.tangents, detail.uv_set, detail.decoder}, triangle.number};
+    std::array<Float3, 3> normals{};
+    std::array<Float4, 3> tangents{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        normals[k] = triangle.normal(k);
+        tangents[k] = placement->tangent((*detail.tangents)[3 * triangle.number + triangle.stored(k)]);
+    }
+    return {normals, tangents, detail.decoder};
+}
+
 Result<void> check_detail(const HighDetail& detail, const MeshPart& part) {
     if (detail.normals == nullptr && detail.color == nullptr) return {};
     if (detail.color != nullptr) {
@@ -82,13 +96,11 @@ Vector3 HighSurface::normal_at(const Triangles::Triangle& triangle, const Weight
         const NormalMap& map = *detail->normals;
         const Sampled at = sampled(triangle, weights, detail->uv_set, map.extent());
         const Vector3 t = read_texel(detail->decoder, {at.of(map.x), at.of(map.y), at.of(map.z)});
-        const CornerFrames frames({triangle.part, *detail->tangents, detail->uv_set, detail->decoder}, triangle.number);
-        return decode(frames.at(weights), t);
+        return decode(frames_at(triangle, *detail).at(weights), t);
     }
     if (!triangle.part.normals.empty()) {
         Vector3 sum;
-        for (std::size_t k = 0; k < 3; ++k)
-            sum = sum + weights[k] * normalized(vector_of(triangle.part.normals[triangle.vertex(k)]));
+        for (std::size_t k = 0; k < 3; ++k) sum = sum + weights[k] * normalized(vector_of(triangle.normal(k)));
         if (dot(sum, sum) > 1e-12) return normalized(sum);
     }
     return face_normal(triangle);
@@ -114,7 +126,8 @@ Vector3 HighSurface::vertex_color_at(const Triangles::Triangle& triangle, const 
 }
 
 Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high) {
-    if (!inputs.high_ids.empty() && inputs.high_ids.size() != high.size())
+    const std::size_t standing = inputs.high_places.empty() ? high.size() : inputs.high_places.size();
+    if (!inputs.high_ids.empty() && inputs.high_ids.size() != standing)
         return bad_option("high_ids: must have a number for each part of the high mesh");
     if (std::any_of(inputs.high_ids.begin(), inputs.high_ids.end(), [](std::int32_t id) { return id < 0; }))
         return bad_option("high_ids: must be 0 or more");

@@ -37,7 +37,7 @@ public:
 
     [[nodiscard]] bool has_ids() const { return !inputs_.high_ids.empty(); }
     [[nodiscard]] std::int32_t id_of(const Triangles::Triangle& triangle) const {
-        return inputs_.high_ids[index_of(triangle)];
+        return inputs_.high_ids[triangle.place == nullptr ? index_of(triangle) : triangle.place->place];
     }
 
 private:

@@ -42,9 +42,10 @@ inline void HitNormals::add(const HighSurface& surface, const Triangles::Triangl
     weights_.x[k] = weights[0];
     weights_.y[k] = weights[1];
     weights_.z[k] = weights[2];
-    const bool mixes = surface.mixes_normals(triangle);
+    const bool mixes = surface.mixes_normals(triangle), is_placed = triangle.placement() != nullptr;
     for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Float3 n = mixes ? triangle.part.normals[triangle.vertex(corner)] : Float3{};
+        Float3 n{};
+        if (mixes) n = is_placed ? triangle.normal(corner) : triangle.part.normals[triangle.stored_vertex(corner)];
         corners_[3 * corner][k] = n.x;
         corners_[3 * corner + 1][k] = n.y;
         corners_[3 * corner + 2][k] = n.z;

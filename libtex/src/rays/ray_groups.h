@@ -9,6 +9,7 @@
 
 #include <tex/mesh.h>
 
+#include "mesh/node_transform.h"
 #include "rays/box_tree.h"
 
 namespace tex::inline v1 {
@@ -25,8 +26,8 @@ public:
     static constexpr int kNone = -1;
 
     // One group of all parts if `inputs` has no groups. With `whole`, there is a tree of all parts, too. `low` and
-    // `high` must outlive this. Errors: bad_option (there are no triangles), unsupported (too many of them),
-    // out_of_memory, cancelled.
+    // `high` must outlive this. Errors: bad_option (there are no triangles), unsupported (too many of them), bad_data
+    // (a place is not invertible, or makes infinite coordinates), out_of_memory, cancelled.
     static Result<RayGroups> make(const MeshPart& low, const std::vector<MeshPart>& high, const TransferInputs& inputs,
                                   bool whole, const Execution& execution, ProgressSpan span);
 
@@ -39,6 +40,12 @@ public:
     [[nodiscard]] const BoxTree& whole() const { return whole_ ? *whole_ : groups_.front().tree; }
 
 private:
+    Result<void> place(const std::vector<MeshPart>& high, const TransferInputs& inputs);
+    [[nodiscard]] Triangles triangles_of(const std::vector<MeshPart>& high, const std::vector<int>& numbers,
+                                         int number) const;
+
+    std::vector<NodeTransform> placements_;
+    std::vector<StandingPart> places_;  // if parts have any, which refer to `placements_`
     std::vector<RayGroup> groups_;
     std::vector<int> of_low_;  // empty: all are of group 0
     std::optional<BoxTree> whole_;
