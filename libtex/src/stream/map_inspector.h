@@ -48,7 +48,7 @@ private:
 
 // Where y of a whole map points, as check() sees it; if that does not show, SourceOptions::y_otherwise. Errors, without
 // a file: it does not show, or parts differ.
-[[nodiscard]] Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options);
+[[nodiscard]] Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options = {});
 [[nodiscard]] Result<YAxis> measured_y(const YVerdict& verdict, const SourceOptions& options);
 
 // Inspects a whole map as the options say. Precondition: `info` knows whether y is assumed.
