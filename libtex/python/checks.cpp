@@ -230,7 +230,7 @@ void add_report(Module& module) {
         .property("kind", "str",
                   "What the picture holds: 'normals', 'object-space', 'heights', 'grey' (of 8 bits), 'colour', 'data', "
                   "'one-colour', or 'unknown'.",
-                  [](const CheckReport& r) { return word_of(r.kind); })
+                  [](const CheckReport& r) { return str_of(std::string(name_of(kPictureKindNames, r.kind))); })
         .property("kind_confidence", "float", "That it is that kind, from 0.5 to 1.",
                   [](const CheckReport& r) { return r.kind_confidence; })
         .property("levels", "int", "The number of levels.", [](const CheckReport& r) { return r.levels; })

@@ -21,9 +21,9 @@ namespace {
 
 using Rows = std::array<double, 12>;
 
-class Randoms {
+class PlaceRandoms {
 public:
-    explicit Randoms(unsigned seed) : random_(seed * 7919 + 1) {}
+    explicit PlaceRandoms(unsigned seed) : random_(seed * 7919 + 1) {}
     double around(double size) { return size * (2.0 * static_cast<double>(random_()) / 2147483646.0 - 1.0); }
     unsigned below(unsigned n) { return static_cast<unsigned>(random_() >> 8) % n; }
 
@@ -32,7 +32,7 @@ private:
 };
 
 // One of the kinds of matrices that nodes have, about a place.
-Rows matrix(Randoms& random, unsigned kind) {
+Rows matrix(PlaceRandoms& random, unsigned kind) {
     Rows rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
     const auto fill = [&](double diagonal, double size) {
         for (std::size_t k = 0; k < 12; ++k) {
@@ -81,7 +81,7 @@ MeshPart with_colors(MeshPart part) {
 }
 
 Scene random_scene(unsigned seed) {
-    Randoms random(seed);
+    PlaceRandoms random(seed);
     Scene scene;
     scene.parts = {sphere().part, with_colors(torus().part), square(-0.5f, 1.0f), smooth_cube().part};
     scene.parts[2].normals.clear();
@@ -105,7 +105,7 @@ bool same_hit(const RayHit& a, const RayHit& b) {
 }
 
 // Near each other, or not: those that are go through the trees together.
-std::vector<Ray> rays_at(const Scene& scene, Randoms& random) {
+std::vector<Ray> rays_at(const Scene& scene, PlaceRandoms& random) {
     const MeshPart& part = scene.copies[random.below(static_cast<unsigned>(scene.copies.size()))];
     const Float3 to = part.positions[random.below(static_cast<unsigned>(part.positions.size()))];
     const double size = random.below(2) == 0 ? 20.0 : 2.0, spread = random.below(3) == 0 ? 1.0 : 0.01;
@@ -139,7 +139,7 @@ TEST(TransferPlaces, RaysHitExactlyWhatTheyHitOnCopies) {
             const TreeView a = placed.whole().view(), b = copied.whole().view();
             ASSERT_NE(a.places, nullptr);
             ASSERT_EQ(b.places, nullptr);
-            Randoms random(seed + 100);
+            PlaceRandoms random(seed + 100);
             int hits = 0;
             for (int k = 0; k < 400; ++k) {
                 const std::vector<Ray> rays = rays_at(scene, random);
@@ -167,7 +167,7 @@ TEST(TransferPlaces, HaveTheBoxAndTheNearestPointsOfCopies) {
         EXPECT_EQ(a.low().x, b.low().x);
         EXPECT_EQ(a.high().y, b.high().y);
         EXPECT_EQ(a.high().z, b.high().z);
-        Randoms random(seed);
+        PlaceRandoms random(seed);
         for (int k = 0; k < 200; ++k) {
             const Vector3 p{random.around(9.0), random.around(9.0), random.around(9.0)};
             const NearestPoint of_a = a.nearest(p), of_b = b.nearest(p);
@@ -193,7 +193,7 @@ struct Baked {
             part.tangents.resize(part.positions.size());
             for (std::size_t c = 0; c < made.size(); ++c) part.tangents[part.indices[c]] = made[c];
         }
-        Randoms random(5);
+        PlaceRandoms random(5);
         for (unsigned k = 0; k < 24; ++k) {
             Rows rows = matrix(random, k % 5);
             for (std::size_t i = 0; i < 12; ++i) rows[i] = i % 4 == 3 ? random.around(0.5) : 0.9 * rows[i];

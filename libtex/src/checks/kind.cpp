@@ -287,7 +287,7 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (m.texels < kLeastTexels) return Kind::normals;
     const auto& planes = stored.image->planes;
     if (!stored.has_z()) {
-        if (planes.size() < 3) return Kind::normals;
+        if (planes.size() < 3 || stored.channel(Component::y) == 3) return Kind::normals;
         if (stored.channel(Component::x) != 3)
             return m.grey <= thresholds::kGreyTexels && are_two_components(m, is_surface) ? Kind::normals
                                                                                           : Kind::no_map;
