@@ -82,7 +82,8 @@ TEST_P(EveryReaderUsage, OptionsAndValuesAreChecked) {
 }
 
 TEST_P(EveryReaderUsage, InputsAreNeeded) {
-    refuses({}, GetParam() == "check-normals" ? "no input; see check-normals --help" : "two files are compared: A and B");
+    refuses({},
+            GetParam() == "check-normals" ? "no input; see check-normals --help" : "two files are compared: A and B");
 }
 
 TEST_P(EveryUsage, UnknownOptionsComeWithASuggestion) {
