@@ -282,7 +282,6 @@ struct PartPlace {
     std::array<double, 12> to_scene = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // as that of MeshNode
 };
 
-// Parts, and where they stand.
 struct SceneParts {
     std::vector<MeshPart> parts;
     std::vector<PartPlace> places;  // empty: each part stands once, where it is stored
@@ -295,9 +294,7 @@ inline constexpr std::size_t kFewCopied = std::size_t{1} << 18;
 // or more, so that a forest takes as much memory as one tree: they stay in their own space, for
 // TransferInputs::high_places. Parts that are shown once have a place there, too, and are moved. If no part is shown
 // more than once, or copies are made, the parts are those of parts_in_scene(), and there are no places.
-//
 // `most` limits copies and places of parts that are shown more than once, alone: a place counts as 16 triangles.
-//
 // Preconditions, errors: as parts_in_scene().
 [[nodiscard]] TEX_API Result<SceneParts> places_in_scene(Mesh mesh, std::size_t most = kMaxCopied);
 

@@ -4,6 +4,15 @@
 
 namespace tex::inline v1 {
 
+void HitNormals::set_placed(std::size_t k, bool mixes) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Float3 n = mixes ? places_[k].normal(corner) : Float3{};
+        corners_[3 * corner][k] = n.x;
+        corners_[3 * corner + 1][k] = n.y;
+        corners_[3 * corner + 2][k] = n.z;
+    }
+}
+
 void HitNormals::find(const HighSurface& surface) {
     const float* rows[9];
     for (std::size_t row = 0; row < 9; ++row) rows[row] = corners_[row];

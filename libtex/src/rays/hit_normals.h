@@ -29,6 +29,9 @@ public:
     [[nodiscard]] Vector3 at(std::size_t k) const { return {normals_.x[k], normals_.y[k], normals_.z[k]}; }
 
 private:
+    // Sets the corners of the k-th triangle, which stands in a place.
+    void set_placed(std::size_t k, bool mixes);
+
     std::vector<Triangles::Triangle> places_;
     VectorBlock<kMost> weights_, normals_;
     float corners_[9][kMost + kMoreVectors] = {};  // normals: corner and axis, triangle
@@ -42,10 +45,10 @@ inline void HitNormals::add(const HighSurface& surface, const Triangles::Triangl
     weights_.x[k] = weights[0];
     weights_.y[k] = weights[1];
     weights_.z[k] = weights[2];
-    const bool mixes = surface.mixes_normals(triangle), is_placed = triangle.placement() != nullptr;
+    const bool mixes = surface.mixes_normals(triangle);
+    if (triangle.place != nullptr) return set_placed(k, mixes);
     for (std::size_t corner = 0; corner < 3; ++corner) {
-        Float3 n{};
-        if (mixes) n = is_placed ? triangle.normal(corner) : triangle.part.normals[triangle.stored_vertex(corner)];
+        const Float3 n = mixes ? triangle.part.normals[triangle.stored_vertex(corner)] : Float3{};
         corners_[3 * corner][k] = n.x;
         corners_[3 * corner + 1][k] = n.y;
         corners_[3 * corner + 2][k] = n.z;
