@@ -42,6 +42,10 @@ TEST(MapInspector, SeesTheDirectionOfGentleAndSteepSurfaces) {
 TEST(MapInspector, SmallAndFlatMapsShowNothing) {
     EXPECT_FALSE(measured_y(waves({31, 96}, 1.0, -1.0)));
     EXPECT_FALSE(measured_y(waves({96, 96}, 0.0, -1.0)));
+    SourceOptions otherwise;
+    otherwise.y_otherwise = YAxis::down;
+    EXPECT_EQ(*measured_y(waves({96, 96}, 0.0, -1.0), otherwise), YAxis::down);
+    EXPECT_EQ(*measured_y(waves({96, 80}, 0.5, 1.0), otherwise), YAxis::up) << "what the texels show comes first";
 }
 
 void put_texel(NormalMap& map, int i, int j, const std::array<float, 3>& n) {
