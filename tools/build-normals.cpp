@@ -84,7 +84,8 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.example("build-normals --watch --no-sync", "Builds what is saved, while people work.");
     command.check([this] {
         if (command.inputs().size() > 1 && !farm_.merges()) throw cli::UsageError("give one manifest");
-        if (init_ && (build_.dry_run || build_.prune || watch_ || !explain_.empty() || farm_.is_used() || farm_.merges()))
+        if (init_ &&
+            (build_.dry_run || build_.prune || watch_ || !explain_.empty() || farm_.is_used() || farm_.merges()))
             throw cli::UsageError("--init only writes a manifest: it goes without --dry-run, --prune, --watch ...");
         if (watch_ && (build_.dry_run || !explain_.empty()))
             throw cli::UsageError("--watch goes neither with --dry-run nor with --explain");
