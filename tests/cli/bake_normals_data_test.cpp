@@ -67,7 +67,7 @@ TEST(HeightsWithoutData, AreNoCliffs) {
     EXPECT_FALSE(scratch.has("x.dds"));
     const Ran filled = run(scratch, "bake-normals", {input, "-o", "x.dds", "--fill-invalid"});
     EXPECT_EQ(filled.code, 0) << filled.err;
-    EXPECT_EQ(filled.err, "");
+    EXPECT_EQ(without_notes(filled.err), "");
     const Ran cliffs = run(scratch, "bake-normals", {input, "-o", "x.dds", "--no-data", "none"});
     EXPECT_EQ(cliffs.code, 0) << cliffs.err;
     EXPECT_NE(cliffs.err.find("are steeper than dxt5nm"), std::string::npos) << cliffs.err;

@@ -198,11 +198,11 @@ TEST_F(BakeNormals, DebandWarnsIfThereAreNoSteps) {
     scratch_.write("fine.pfm", text);
     const Ran warned = bake({"fine.pfm", "-o", "x.dds", "--deband", "on"});
     EXPECT_EQ(warned.code, 0);
-    EXPECT_EQ(warned.err,
+    EXPECT_EQ(without_notes(warned.err),
               "bake-normals: warning: fine.pfm: --deband on changes nothing: the heights lie on no common "
               "steps coarser than 12 bits\n");
     const std::string bytes = scratch_.read("x.dds");
-    EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "auto"}).err, "");
+    EXPECT_EQ(without_notes(bake({"fine.pfm", "-o", "x.dds", "--deband", "auto"}).err), "");
     EXPECT_TRUE(scratch_.read("x.dds") == bytes);
     EXPECT_EQ(bake({"fine.pfm", "-o", "x.dds", "--deband", "maybe"}).code, 2);
 }
@@ -365,16 +365,15 @@ TEST_F(BakeNormals, TheColourConfigurationIsADependency) {
 }
 
 TEST_F(BakeNormals, GuessedHeightsAreToldOnceWithCounts) {
-    ASSERT_EQ(bake({"bricks.png", "-o", "colour.png", "--bumpiness", "12"}).code,
-              0);  // a picture with different channels
+    scratch_.add_sample("report.png", "colour.png");  // a picture with different channels
     std::filesystem::copy_file(scratch_.path("colour.png"), scratch_.path("more.png"));
     const Ran ran = bake({"colour.png", "bricks.png", "more.png", "--out-dir", "out"});
     EXPECT_EQ(ran.code, 0);
-    ASSERT_EQ(lines_of(ran.err).size(), 1u) << ran.err;
+    ASSERT_EQ(lines_of(without_notes(ran.err)).size(), 1u) << ran.err;
     EXPECT_NE(ran.err.find(": R, G and B differ in "), std::string::npos) << ran.err;
     EXPECT_NE(ran.err.find("colour.png and 1 more: "), std::string::npos) << ran.err;
     EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--quiet"}).err, "");
-    EXPECT_EQ(bake({"colour.png", "-o", "x.dds", "--channel", "luma"}).err, "");
+    EXPECT_EQ(without_notes(bake({"colour.png", "-o", "x.dds", "--channel", "luma"}).err), "");
     const Ran missing = bake({"bricks.png", "-o", "z.dds", "--channel", "a"});  // an error of the file
     EXPECT_EQ(missing.code, 4);
     EXPECT_EQ(lines_of(missing.err).size(), 1u) << missing.err;

@@ -35,7 +35,7 @@ protected:
     Ran does(const std::string& command, const std::vector<std::string>& arguments) {
         const Ran ran = go(command, arguments);
         EXPECT_EQ(ran.code, 0) << ran.err;
-        EXPECT_EQ(ran.err, "");
+        EXPECT_EQ(without_notes(ran.err), "");
         return ran;
     }
     void refuses(std::vector<std::string> arguments, int code, const std::string& part) {

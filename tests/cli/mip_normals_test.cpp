@@ -21,7 +21,7 @@ protected:
     void does(const std::string& command, const std::vector<std::string>& arguments) {
         const Ran ran = go(command, arguments);
         EXPECT_EQ(ran.code, 0) << command << " " << arguments[0] << ": " << ran.err;
-        EXPECT_EQ(ran.err, "");
+        EXPECT_EQ(without_notes(ran.err), "");
     }
     Scratch scratch_;
 };

@@ -129,6 +129,16 @@ std::vector<std::string> lines_of(const std::string& text) {
     return lines;
 }
 
+std::string without_notes(const std::string& said) {
+    std::string rest;
+    for (const std::string& line : lines_of(said)) {
+        if (line.find("one level is written") == std::string::npos &&
+            line.find("is no multiple of 4") == std::string::npos)
+            rest += line + "\n";
+    }
+    return rest;
+}
+
 std::string without_seconds(const std::string& json) {
     static const std::regex seconds(",\"seconds\":[-+.e0-9]+");
     return std::regex_replace(json, seconds, "");

@@ -66,6 +66,9 @@ Ran shell(const Scratch& scratch, const std::string& script);
 
 [[nodiscard]] std::vector<std::string> lines_of(const std::string& text);
 
+// What was said, without the warnings of an output that lacks what nobody asked about: smaller levels, whole blocks.
+[[nodiscard]] std::string without_notes(const std::string& said);
+
 // JSON lines without their times, which differ from run to run.
 [[nodiscard]] std::string without_seconds(const std::string& json);
 

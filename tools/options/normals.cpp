@@ -249,7 +249,9 @@ std::optional<JudgedPicture> NormalsReader::judged(const Job& job, const std::st
     const bool is_guessed = info.guessed && !format_info(info.format).has_blocks();  // grey and alpha, say
     const bool raises_doubt =
         info.object_space || (!length_in && (info.z_doubtful || info.background > kMostly || is_guessed));
-    if (!raises_doubt || job.task.model) return std::nullopt;
+    // check-normals reads the file as it states, not as options say.
+    const bool is_as_stated = !swizzle && unpack.range == ValueRange::automatic;
+    if (!raises_doubt || !is_as_stated || job.task.model) return std::nullopt;
     return judge_picture(path, job.read_options);
 }
 

@@ -209,7 +209,7 @@ private:
         } else {
             why_not_[k] = std::string(meaning_of(report.kind));
         }
-        file.is_left_out = is_normals;
+        file.is_left_out = is_normals || report.kind == PictureKind::unknown;
     }
 
     static std::string_view meaning_of(PictureKind kind) {
