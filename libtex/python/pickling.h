@@ -290,6 +290,8 @@ void each_part(CheckReport& o, F& f) {
     f(o.explained);
     f(o.format);
     f(o.swizzle);
+    f(o.kind);
+    f(o.kind_confidence);
     f(o.extent);
     f(o.levels);
     f(o.more_data);

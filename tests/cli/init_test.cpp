@@ -138,6 +138,12 @@ TEST_F(Init, AMissingManifestNamesTheOption) {
     EXPECT_NE(ran.err.find("normals.toml: "), std::string::npos);
     EXPECT_NE(ran.err.find("build-normals --init writes one"), std::string::npos) << ran.err;
     EXPECT_EQ(shell(scratch_, "build-normals --init --dry-run").code, 2);
+    std::filesystem::create_directories(scratch_.path("empty"));
+    const Ran empty = shell(scratch_, "cd empty && build-normals --init");
+    EXPECT_EQ(empty.code, 4);
+    EXPECT_NE(empty.err.find("nothing is written: 0 files; no picture below this folder holds"), std::string::npos)
+        << empty.err;
+    EXPECT_FALSE(scratch_.has("empty/normals.toml"));
 }
 
 // Blue holds occlusion, and alpha heights: x and y alone are judged.

@@ -283,6 +283,14 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
         return ExitCode::io;
     }
     const std::vector<InferredRule> rules = infer_rules(tree.settings());
+    if (rules.empty()) {
+        const std::string where = root.empty() ? "this folder" : root;
+        return failed({ErrorCode::bad_data, manifest,
+                       fmt::format("nothing is written: {}; no picture below {} holds normals or heights that a rule "
+                                   "could be for",
+                                   tree.totals().text(), where)},
+                      console);
+    }
     if (auto written = write_new(manifest, manifest_text(rules, tree)); !written)
         return failed(written.error(), console);
     if (auto written = write_new(baseline, tree.baseline(baseline).text()); !written)

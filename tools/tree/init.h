@@ -13,7 +13,7 @@ namespace tex::cli {
 
 // Reads every picture below `root` (empty: the working directory), writes `manifest` with rules that agree with what
 // the pictures hold, and beside it a baseline for check-normals with today's findings about normal maps. Neither file
-// may exist. Prints what was found and what to run next.
+// may exist, and neither is written if no rule would be for any picture. Prints what was found.
 [[nodiscard]] ExitCode init_tree(const std::string& root, const std::string& manifest, const RunOptions& running,
                                  Console& console);
 
