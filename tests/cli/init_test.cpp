@@ -108,6 +108,7 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
 
 TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     scratch_.write("art/broken_n.png", "no picture");
+    scratch_.add_sample("waves.png", "art/bad\xff_h.png");  // a name that no TOML may hold
     const Ran ran = shell(scratch_, "build-normals --init");
     ASSERT_EQ(ran.code, 0) << ran.err;
     const std::string manifest = scratch_.read("normals.toml");

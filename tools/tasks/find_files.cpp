@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "cli/file_status.h"
+#include "cli/text.h"
 
 namespace tex::cli {
 namespace {
@@ -22,8 +23,7 @@ constexpr std::string_view kPictureExtensions[] = {"dds", "ktx2", "ktx", "astc",
 bool is_picture(const std::string& path) {
     const std::size_t dot = path.rfind('.');
     if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return false;
-    std::string extension = path.substr(dot + 1);
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string extension = lower_case(path.substr(dot + 1));
     return std::find(std::begin(kPictureExtensions), std::end(kPictureExtensions), extension) !=
            std::end(kPictureExtensions);
 }

@@ -54,8 +54,7 @@ public:
     InferredRule rule(const std::string& settings) {
         InferredRule rule;
         rule.settings = settings;
-        // Files that other settings fit, too, do not ask for a pattern of their own.
-        constexpr std::size_t kFew = 2;
+        constexpr std::size_t kFew = 2;  // a single file is named instead
         for (const auto& parts : {&Inference::everywhere, &Inference::in_folder, &Inference::whole_folder}) {
             std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> groups;
             for (std::size_t k = 0; k < files_.size(); ++k) {

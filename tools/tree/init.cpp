@@ -81,7 +81,7 @@ std::string mip_step(std::optional<YAxis> y, const CheckReport& report, const st
 
 constexpr const char* kBakeStep = "{ bake = { bumpiness = \"auto\" } }";
 
-// Why no rule is for a picture; empty if one is.
+// The pictures of a tree, what they hold, and why no rule is for some of them.
 class Tree {
 public:
     Tree(std::vector<FoundFile> files, std::string root) : files_(std::move(files)), root_(std::move(root)) {
@@ -126,6 +126,10 @@ public:
         for (std::size_t k = 0; k < files_.size(); ++k) {
             SettingsOfFile file{files_[k].path, {}, {}, false};
             settle(k, materials, file);
+            if (printable(file.path) != file.path) {  // bytes that no TOML may hold, or that nobody could read
+                file = {file.path, {}, {}, false};
+                why_not_[k] = "the name is not UTF-8, or holds control characters";
+            }
             const std::string stem = file.path.substr(0, file.path.rfind('.'));
             if ((!file.settings.empty() || !file.also.empty()) && !outputs.insert(stem).second) {
                 file.settings.clear();
@@ -234,7 +238,7 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "[defaults]\n"
         "out-dir = \"build/textures\"\n"
         "name = \"{dir}/{stem}.dds\"\n"
-        "# For an engine, such as for = \"godot\", instead: normal-maps-engines(7).\n"
+        "# For an engine, write its name instead, as in { for = \"unity\" }: normal-maps-engines(7).\n"
         "outputs = [ { format = \"bc5\", y = \"up\" } ]\n";
     for (const InferredRule& rule : rules) {
         const bool bakes = rule.settings == kBakeStep;

@@ -50,7 +50,8 @@ Sampled sampled(const Triangles::Triangle& triangle, const HighSurface::Weights&
     return {extent, u * extent.width, v * extent.height};
 }
 
-// Where the part stands, normals and tangents of its own space are turned as in_scene() does it.
+// The tangent frames at the corners. For a part that is drawn in several places, its own normals and tangents are
+// turned to the place, as in_scene() does.
 CornerFrames frames_at(const Triangles::Triangle& triangle, const HighDetail& detail) {
     const NodeTransform* const placement = triangle.placement();
     if (placement == nullptr)

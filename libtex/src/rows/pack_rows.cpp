@@ -81,8 +81,8 @@ void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, in
     }
 }
 
-// Packs rows of blocks in which x and y share what there is, `count` rows of texels from row j. For the other
-// arguments, see pack_rows().
+// Packs `count` rows of texels from row j into blocks that encode x and y together. pack_rows() explains the other
+// arguments.
 void pack_whole_blocks(const WholeBlocks& codec, const Rows& rows, const PackOptions& options, int j, int count,
                        std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
