@@ -19,10 +19,9 @@ public:
     [[nodiscard]] bool is_mirrored() const { return sign_ < 0.0; }
     [[nodiscard]] bool is_identity() const;
 
-    // Calls stay calls: where GCC 12 vectorises what makes doubles of the result, it leaves out the rounding to float.
-    [[nodiscard, gnu::noinline]] Float3 position(Float3 p) const;
-    [[nodiscard, gnu::noinline]] Float3 normal(Float3 n) const;
-    [[nodiscard, gnu::noinline]] Float4 tangent(Float4 t) const;
+    [[nodiscard]] Float3 position(Float3 p) const;
+    [[nodiscard]] Float3 normal(Float3 n) const;
+    [[nodiscard]] Float4 tangent(Float4 t) const;
 
     // Whether coordinates up to this size stay finite, for certain.
     [[nodiscard]] bool keeps_finite(double largest) const;

@@ -87,8 +87,8 @@ struct StoredSpace {
     [[nodiscard]] static std::uint32_t number(std::uint32_t triangle) { return triangle; }
 };
 
-// As NodeTransform::position(), which says why it stays a call.
-[[gnu::noinline]] Float3 placed_corner(const PlacedTree& place, double x, double y, double z) {
+// As NodeTransform::position().
+Float3 placed_corner(const PlacedTree& place, double x, double y, double z) {
     float moved[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double* const row = place.to_scene[axis];
