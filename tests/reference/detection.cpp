@@ -8,6 +8,7 @@
 
 #include <tex/check.h>
 #include <tex/file.h>
+#include <tex/format.h>
 #include <tex/pack.h>
 
 #include "reference/planting.h"
@@ -24,7 +25,10 @@ bool found(const CheckReport& report, const std::string& ids) {
 // The base level as unit vectors, y as the file has it.
 Result<NormalMap> vectors(Texture texture) {
     texture.levels.resize(1);
+    const auto swizzle = guess_swizzle(texture);
+    if (!swizzle) return swizzle.error();
     UnpackOptions options;
+    options.swizzle = *swizzle;
     options.y_axis = YAxis::up;
     auto chain = unpack(texture, options);
     if (!chain) return chain.error();

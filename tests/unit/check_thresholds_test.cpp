@@ -207,6 +207,7 @@ TEST(CheckThresholds, FollowFromTheHalfThatSetsThem) {
         Texture base = *texture;
         base.levels.resize(1);
         UnpackOptions options;
+        options.swizzle = guess_swizzle(base).value();
         options.y_axis = YAxis::up;
         const auto chain = unpack(base, options);
         ASSERT_TRUE(chain);

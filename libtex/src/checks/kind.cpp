@@ -214,8 +214,9 @@ bool are_vectors(const KindMeasure& m) {
 bool are_damaged_vectors(const KindMeasure& m) {
     const auto restored = [&m](Reading reading) {
         const KindMeasure::Vectors& v = m.as(reading);
-        return v.unit >= thresholds::kRestoredShare && v.off_centre() <= thresholds::kRestoredCentre &&
-               v.z > thresholds::kUprightMedian;
+        // Where nearly all vectors become unit ones, the map may be steep.
+        const double least_z = v.unit >= thresholds::kRestoredSurely ? 0.0 : thresholds::kUprightMedian;
+        return v.unit >= thresholds::kRestoredShare && v.off_centre() <= thresholds::kRestoredCentre && v.z > least_z;
     };
     const bool related = relation_of(m) > thresholds::kRestoredRelated;
     if (restored(Reading::premultiplied) && m.as(Reading::as_stored).unit < m.as(Reading::premultiplied).unit)

@@ -50,6 +50,7 @@ inline constexpr double kNoiseCorrelation = 0.05;
 inline constexpr double kUnitShare = 0.75;
 // The same after a damage was undone. Rounding came in between: 0.63 and more.
 inline constexpr double kRestoredShare = 0.6;
+inline constexpr double kRestoredSurely = 0.9;  // colour pictures that centre then: at most 0.46
 // Medians of x and y, or of the two components that are not near 1. Leaning maps: up to 0.29.
 inline constexpr double kCentred = 0.35;
 inline constexpr double kRestoredCentre = 0.15;  // sRGB, read the other way: at most 0.03
