@@ -343,6 +343,22 @@ outputs = [ { name = "g/{stem}.png", for = "godot" }, { name = "b/{stem}.ktx2", 
     EXPECT_EQ(parts[0].find("dxt5nm"), std::string::npos) << parts[0];
 }
 
+TEST_F(BuildNormals, ANameWithoutExtensionGetsThatOfTheEngine) {
+    scratch_.write("normals.toml", R"(version = 1
+[defaults]
+out-dir = "out"
+[[rule]]
+match = "art/wall_h.png"
+steps = [ { bake = {} } ]
+outputs = [ { name = "{engine}/{stem}_n", for = "godot" }, { for = "bevy", name = "{stem}" }, { format = "bc5" } ]
+)");
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    for (const char* made : {"out/godot/wall_h_n.png", "out/wall_h.ktx2", "out/art/wall_h.dds"})
+        EXPECT_TRUE(scratch_.has(made)) << made;
+    EXPECT_EQ(run(scratch_, "build-normals", {"--dry-run"}).out, "0 to make, 1 up to date\n");
+}
+
 // A default means nothing beside a setting that is used instead. An output with a file for each level is found by each.
 TEST_F(BuildNormals, ExplainKnowsWhatReplacesADefaultAndTheFilesOfLevels) {
     scratch_.write("normals.toml", R"(version = 1

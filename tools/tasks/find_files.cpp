@@ -3,7 +3,7 @@
 #include "tasks/find_files.h"
 
 #include <algorithm>
-#include <iterator>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -15,17 +15,18 @@ namespace {
 
 constexpr const char* kWildcards = "*?[{";
 
-// Of files that may hold normals, without their dot.
-constexpr std::string_view kPictureExtensions[] = {"dds", "ktx2", "ktx", "astc", "png", "exr", "tga",  "bmp",
-                                                   "jpg", "jpeg", "tif", "tiff", "hdr", "psd", "webp", "jp2",
-                                                   "gif", "dpx",  "sgi", "tx",   "glb", "gltf"};
+// Without their dots.
+constexpr std::string_view kPictureExtensions[] = {"dds",  "ktx2", "ktx",  "astc", "png",  "exr", "tga",
+                                                   "bmp",  "jpg",  "jpeg", "tif",  "tiff", "hdr", "psd",
+                                                   "webp", "jp2",  "gif",  "dpx",  "sgi",  "tx"};
+constexpr std::string_view kHeightExtensions[] = {"asc", "hgt", "bil", "flt", "r16", "r32", "raw"};
+constexpr std::string_view kModelExtensions[] = {"glb", "gltf"};
 
-bool is_picture(const std::string& path) {
+template <std::size_t N>
+bool has_one_of(const std::string_view (&extensions)[N], const std::string& path) {
     const std::size_t dot = path.rfind('.');
     if (dot == std::string::npos || path.find('/', dot) != std::string::npos) return false;
-    const std::string extension = lower_case(path.substr(dot + 1));
-    return std::find(std::begin(kPictureExtensions), std::end(kPictureExtensions), extension) !=
-           std::end(kPictureExtensions);
+    return std::find(extensions, extensions + N, lower_case(path.substr(dot + 1))) != extensions + N;
 }
 
 bool is_hidden(std::string_view path) {
@@ -35,6 +36,9 @@ bool is_hidden(std::string_view path) {
 }
 
 }  // namespace
+
+bool is_picture(const std::string& path) { return has_one_of(kPictureExtensions, path); }
+bool is_height_file(const std::string& path) { return has_one_of(kHeightExtensions, path); }
 
 Result<FolderPictures> pictures_below(const std::string& folder) {
     const Glob all("**");
@@ -49,7 +53,7 @@ Result<FolderPictures> pictures_below(const std::string& folder) {
     const std::string before = folder == "." ? "" : folder.ends_with('/') ? folder : folder + "/";
     for (const FoundFile& file : find_files(folder == "." ? "" : folder, search)) {
         if (is_hidden(file.path)) continue;
-        if (is_picture(file.path))
+        if (is_picture(file.path) || has_one_of(kModelExtensions, file.path))
             found.files.push_back(before + file.path);
         else
             ++found.others;

@@ -43,6 +43,11 @@ struct FileSearch {
 // none, or a folder cannot be read. Throws UsageError, as Glob.
 [[nodiscard]] Result<std::vector<std::string>> files_matching(const std::string& pattern);
 
+// Whether a file of this name may hold normals, or heights: by the extension.
+[[nodiscard]] bool is_picture(const std::string& path);
+// Whether it holds heights alone, in a file type without colours.
+[[nodiscard]] bool is_height_file(const std::string& path);
+
 // The pictures and glTF models in a folder and those below it, by their extensions, and the number of other files.
 struct FolderPictures {
     std::vector<std::string> files;

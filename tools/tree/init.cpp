@@ -37,8 +37,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPictures =
-    "**/*.{png,tif,tiff,exr,tga,bmp,jpg,jpeg,webp,dds,ktx2,hdr,psd,asc,hgt,bil,flt,r16,r32,raw}";
 constexpr const char* kBaselineName = "normals-baseline.json";
 
 // The ends of names of height maps, in lower case, without what separates them. Grey of 8 bits alone shows nothing.
@@ -237,7 +235,7 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "version = 1\n\n"
         "[defaults]\n"
         "out-dir = \"build/textures\"\n"
-        "name = \"{dir}/{stem}.dds\"\n"
+        "name = \"{dir}/{stem}\"\n"
         "# For an engine, write its name instead, as in { for = \"unity\" }: normal-maps-engines(7).\n"
         "outputs = [ { format = \"bc5\", y = \"up\" } ]\n";
     for (const InferredRule& rule : rules) {
@@ -272,14 +270,16 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
         if (fs::symlink_status(path).type() != fs::file_type::not_found)
             return failed({ErrorCode::io, path, "is there already; --init writes new files only"}, console);
     }
-    const Glob pictures(kPictures);
+    const Glob all("**");
     FileSearch search;
-    search.globs = {&pictures};
+    search.globs = {&all};
     search.skip = [](const std::string&) { return false; };
     search.unreadable = [&](const std::string& folder, const std::string& reason) {
         console.warning(folder + ": " + reason);
     };
-    Tree tree(find_files(root, search), root);
+    std::vector<FoundFile> pictures = find_files(root, search);
+    std::erase_if(pictures, [](const FoundFile& file) { return !is_picture(file.path) && !is_height_file(file.path); });
+    Tree tree(std::move(pictures), root);
     tree.check(running, console);
     if (const std::string_view by = console.host().interruption(); !by.empty()) {
         console.error(fmt::format("interrupted by {}; nothing is written", by));

@@ -27,7 +27,7 @@ TextPosition place_of(const toml::source_region& source) {
 // What [defaults] holds.
 struct Defaults {
     std::string out_dir;
-    std::string name = "{dir}/{stem}.dds";
+    std::string name = "{dir}/{stem}";
     std::vector<OutputSettings> outputs;
     Settings check;
     std::map<std::string, Settings> commands;

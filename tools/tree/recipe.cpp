@@ -208,7 +208,7 @@ std::shared_ptr<Program> Recipe::parsed(const StepSettings& step, std::vector<st
     return program = std::move(made);
 }
 
-// `out` is the name of an output; its extension says the file type.
+// `out` is the name of an output. Its extension says the file type; without one, it gets that of the engine, or DDS.
 ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* output, bool is_last, const std::string& out,
                            ProgramPool& pool, Console& console) const {
     ReadyCommand command;
@@ -253,7 +253,10 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     try {
         command.program = parsed(step, std::move(line), out, pool, console);
         command.converter = converter_of(*command.program);
-        Task task{before_.empty() ? "input" : kBetween, out};
+        if (fs::path(out).extension().empty())
+            command.extension =
+                extension_of(command.converter->output_for_task().made_container().value_or(Container::dds));
+        Task task{before_.empty() ? "input" : kBetween, out + command.extension};
         task.origin = "input";
         if (has_tile(out) && command.converter->makes_tiles()) task.tile = kAnyTile;
         for (const std::string& argument : command.arguments) {
@@ -305,8 +308,12 @@ void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     check_folder(*name, out, output.place);
-    RecipeOutput made{
-        ready(rule_.steps.back(), &output, true, out, pool, console), std::move(*name), {}, {}, out, {}, output.place};
+    ReadyCommand last_step = ready(rule_.steps.back(), &output, true, out, pool, console);
+    if (!last_step.extension.empty()) {
+        name.emplace(output.name + last_step.extension);
+        out += last_step.extension;
+    }
+    RecipeOutput made{std::move(last_step), std::move(*name), {}, {}, out, {}, output.place};
     if (names_engine && made.last.converter->output_for_task().engine == nullptr)
         fail_at(manifest_.path, output.place, "name: {engine} needs the key for");
     const std::size_t last = rule_.steps.size() - 1;
@@ -329,33 +336,6 @@ void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console
     outputs_.push_back(std::move(made));
 }
 
-NamedValues Recipe::named_settings(const ReadyCommand& last, const Task& task) const {
-    NamedValues named;
-    std::vector<std::string> steps;
-    for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
-        const std::string& step = rule_.steps[k].command;
-        const auto earlier = std::count(steps.begin(), steps.end(), step);
-        const std::string prefix = earlier == 0 ? step : fmt::format("{} {}", step, earlier + 1);
-        steps.push_back(step);
-        for (const std::string& argument : k < before_.size() ? before_[k].arguments : last.arguments) {
-            const auto [option, value] = cut(argument, '=');
-            const std::string name = prefix + " " + option.substr(2);
-            const std::string shown = argument.size() > option.size() ? value : "true";
-            if (!named.empty() && named.back().first == name) {
-                named.back().second += ", " + shown;
-            } else {
-                named.emplace_back(name, shown);
-            }
-        }
-    }
-    named.emplace_back("steps", join(steps, ", "));
-    named.emplace_back("type", name_of(kContainerNames, task.container));
-    named.emplace_back("levels", has_level(task.output) ? "a file for each" : "in one file");
-    for (const OptionSetting& setting : rule_.check)
-        named.emplace_back("check." + setting.key, join(setting.values, ", "));
-    return named;
-}
-
 std::string Recipe::preset_of(const std::string& name) const {
     const std::string step = cut(name, ' ').first;
     for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
@@ -365,35 +345,6 @@ std::string Recipe::preset_of(const std::string& name) const {
         if (rule_.steps[k].command == step && row != nullptr) return row->value.empty() ? "false" : row->preset;
     }
     return {};
-}
-
-std::vector<std::string> Recipe::command_lines(const std::string& input, std::size_t index) const {
-    for (const std::string& grid : grids_) {  // one command makes all tiles
-        if (input != grid && place_in_grid(grid, input)) return command_lines(grid, index);
-    }
-    std::vector<std::string> lines;
-    std::string from = input;
-    std::map<std::string, std::string> further;
-    if (!outputs_[index].last.writes.empty()) std::ignore = files_of(input, index, &further);
-    for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
-        const bool is_last = k + 1 == rule_.steps.size();
-        const ReadyCommand& command = is_last ? outputs_[index].last : before_[k];
-        const std::string to = is_last ? output_name(input, index) : fmt::format("step{}.exr", k + 1);
-        std::string line =
-            fmt::format("{} {} -o {}", command.program->command.name(), shell_file(from), shell_file(to));
-        for (const std::string& argument : command.arguments) {
-            const auto [name, value] = cut(argument, '=');
-            const auto file = further.find(name);
-            line += fmt::format(" {}", name);
-            if (is_last && file != further.end())
-                line += " " + shell_file(written_name(file->second));
-            else if (argument.size() > name.size())
-                line += " " + shell_word(std::string(value));
-        }
-        lines.push_back(line + (is_last ? "" : fmt::format(" --format {}", format_between(command.arguments))));
-        from = to;
-    }
-    return lines;
 }
 
 }  // namespace tex::cli

@@ -49,6 +49,7 @@ struct ReadyCommand {
     Converter* converter = nullptr;        // the program
     std::vector<std::string> arguments;    // the options as the manifest gives them, sorted by name
     std::vector<std::string> writes = {};  // those of them that name files to write (Row::writes), such as --height-out
+    std::string extension = {};            // what an output name without an extension gets; else empty
 };
 
 // The files of an output, below the root or as paths.
