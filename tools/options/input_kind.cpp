@@ -11,16 +11,17 @@
 namespace tex::cli {
 namespace {
 
-struct KindOfRule {
-    std::string_view id;
-    InputKind kind;
+struct Judgement {
+    std::string_view rule;
+    bool JudgedPicture::*what;
 };
 
 // By weight: the first one that is found decides.
-constexpr KindOfRule kKinds[] = {
-    {"N210", InputKind::no_map},         {"N216", InputKind::no_map},       {"N222", InputKind::no_map},
-    {"N220", InputKind::inverted},       {"N213", InputKind::object_space}, {"N214", InputKind::no_map},
-    {"N215", InputKind::has_background},
+constexpr Judgement kJudgements[] = {
+    {"N210", &JudgedPicture::is_no_map},       {"N216", &JudgedPicture::is_no_map},
+    {"N222", &JudgedPicture::is_no_map},       {"N220", &JudgedPicture::is_inverted},
+    {"N213", &JudgedPicture::is_object_space}, {"N214", &JudgedPicture::is_no_map},
+    {"N215", &JudgedPicture::has_background},
 };
 
 }  // namespace
@@ -32,11 +33,11 @@ std::optional<JudgedPicture> judge_picture(const std::string& path, const ReadOp
     JudgedPicture judged;
     judged.is_vectors = report->swizzle[2] == Component::z;
     for (const Finding& finding : report->findings) judged.is_vectors &= finding.rule->id != "N206";
-    for (const KindOfRule& row : kKinds) {
+    for (const Judgement& judgement : kJudgements) {
         for (const Finding& finding : report->findings) {
-            if (finding.rule->id != row.id) continue;
-            judged.kind = row.kind;
-            judged.words = fmt::format("{} ({})", finding.message, row.id);
+            if (finding.rule->id != judgement.rule) continue;
+            judged.*judgement.what = true;
+            judged.words = fmt::format("{} ({})", finding.message, judgement.rule);
             return judged;
         }
     }
@@ -47,7 +48,7 @@ std::string no_map_text(const JudgedPicture& judged) { return "this is no normal
 
 std::string no_heights_text(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);
-    if (!judged || !judged->is_vectors || judged->kind == InputKind::no_map) return {};
+    if (!judged || !judged->is_vectors || judged->is_no_map) return {};
     return "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "
            "mip-normals make textures";
 }

@@ -11,18 +11,13 @@
 
 namespace tex::cli {
 
-enum class InputKind {
-    normals,         // of tangent space, however damaged
-    no_map,          // colours, data, heights, or a map that lost x
-    object_space,    // vectors of all directions
-    inverted,        // blue is inverted
-    has_background,  // normals around which a colour that is none is not filled
-};
-
 struct JudgedPicture {
-    InputKind kind = InputKind::normals;
-    std::string words;        // of the finding, with its id: "R, G and B are equal in 100 % of the texels (N210)"
-    bool is_vectors = false;  // unit vectors are stored in three channels: it is a normal map by intention
+    std::string words;             // of the finding that decides, with its id: "R, G and B are equal ... (N210)"
+    bool is_no_map = false;        // colours, data, heights, or a map that lost x
+    bool is_object_space = false;  // vectors of all directions
+    bool is_inverted = false;      // blue, or the whole picture
+    bool has_background = false;   // normals around which a colour that is none is not filled
+    bool is_vectors = false;       // unit vectors are stored in three channels: it is a normal map by intention
 };
 
 // Reads the file again, as check-normals does, which takes as long: for pictures that raise a doubt. Nothing if it

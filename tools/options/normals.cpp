@@ -257,27 +257,26 @@ std::optional<JudgedPicture> NormalsReader::judged(const Job& job, const std::st
 
 Result<void> NormalsReader::accept(const Job& job, const std::string& path, const SourceInfo& info) const {
     const std::optional<JudgedPicture> picture = judged(job, path, info);
-    if (!picture || picture->kind != InputKind::no_map) return {};
+    if (!picture || !picture->is_no_map) return {};
     return Error{ErrorCode::bad_data, path, no_map_text(*picture) + kTakeAny};
 }
 
 bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const SourceInfo& info) const {
     const bool doubts_z = info.z_doubtful && !length_in;
-    const std::optional<JudgedPicture> judged = this->judged(job, path, info);
-    const InputKind kind = judged                                  ? judged->kind
-                           : info.object_space && !info.z_doubtful ? InputKind::object_space
-                                                                   : InputKind::normals;
-    const bool has_background = info.background > 0.0 || kind == InputKind::has_background;
-    if (kind == InputKind::no_map) {
-        job.warn(no_map_text(*judged), path);
+    JudgedPicture unjudged;
+    unjudged.is_object_space = info.object_space && !info.z_doubtful;
+    const JudgedPicture judged = this->judged(job, path, info).value_or(unjudged);
+    const bool has_background = info.background > 0.0 || judged.has_background;
+    if (judged.is_no_map) {
+        job.warn(no_map_text(judged), path);
         return false;
     }
-    if (kind == InputKind::object_space) {
+    if (judged.is_object_space) {
         job.warn(
             "its vectors face all directions, as in object space, and are read as tangent space; "
             "convert-normals --from object --mesh FILE converts it",
             path);
-    } else if (kind == InputKind::inverted) {
+    } else if (judged.is_inverted) {
         job.warn(
             "its vectors point into the surface: blue, or the whole picture, was inverted; invert it back in an image "
             "editor, or, if it was blue alone, let --swizzle rg make z from x and y",
