@@ -3,8 +3,8 @@
 # nightly.sh: what takes too long for the gate (.ci/run), by hand: at the latest before an issue is called done.
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
-#     tests/nightly.sh [STEP...]    all steps, or the named ones: alone long scalar commands slurm arm64 tsan tidy
-#                                   fuzz package abi engines platforms portable windows release
+#     tests/nightly.sh [STEP...]    all steps, or the named ones: alone extremes long scalar commands slurm arm64 tsan
+#                                   tidy fuzz package abi engines platforms portable windows release
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -234,6 +234,7 @@ if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache;
 
 build_release
 step alone compile_alone c++
+step extremes script extremes tests/extremes.py build/release 300
 step long long
 step scalar scalar
 step commands commands

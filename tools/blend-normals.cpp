@@ -105,6 +105,10 @@ void BlendNormals::add_blend() {
 
 Result<void> BlendNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
+    if (std::int64_t{blend_.extent.width} * blend_.extent.height > running.read.max_texels)
+        throw cli::UsageError("--extent",
+                              fmt::format("{}x{} texels are more than the limit of {}; --max-texels raises it",
+                                          blend_.extent.width, blend_.extent.height, running.read.max_texels));
     if (tasks.empty()) return {};
     const std::size_t count = details_of(tasks.front()).size();
     if (count == 0) throw cli::UsageError("no detail: give BASE DETAIL... -o FILE, or --detail FILE");

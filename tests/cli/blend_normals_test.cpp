@@ -187,6 +187,8 @@ TEST_F(BlendNormals, MisuseIsRefused) {
             "--strength: 1.5 is not at least 0 and at most 1");
     refuses({"base.exr", "detail.exr", "-o", "x.dds", "--mode", "whitout"}, "did you mean whiteout?");
     refuses({"base.exr", "detail.exr", "-o", "x.dds", "--extent", "0x5"}, "--extent: 0 is not at least 1");
+    refuses({"base.exr", "detail.exr", "-o", "x.dds", "--extent", "65536"},
+            "--extent: 65536x65536 texels are more than the limit of 1073741824; --max-texels raises it");
 }
 
 }  // namespace tex::cli
