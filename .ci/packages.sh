@@ -6,8 +6,8 @@
 # shellcheck disable=SC2034  # used by the scripts that source this file
 build_packages=(
     g++ cmake ninja-build pkg-config
-    libpng-dev libopenexr-dev libtiff-dev libjpeg62-turbo-dev libopenimageio-dev libopencolorio-dev libseccomp-dev
-    libdeflate-dev libisal-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev
+    libpng-dev libopenexr-dev libtiff-dev libjpeg62-turbo-dev libwebp-dev libopenimageio-dev libopencolorio-dev
+    libseccomp-dev libdeflate-dev libisal-dev libzstd-dev libtbb-dev libhwy-dev libfmt-dev
     nlohmann-json3-dev libtomlplusplus-dev libassimp-dev libdraco-dev
 )
 # shellcheck disable=SC2034

@@ -74,7 +74,7 @@ void add_writing(Module& module) {
                               });
     module.verb<WriteOptions>(
         "encode_file", {{"texture", "Texture"}, {"container", "str"}}, "bytes",
-        "The bytes of a file of this type: 'dds', 'ktx2', 'png', 'exr', 'tiff', 'tga', 'bmp', 'jpeg'.",
+        "The bytes of a file of this type: 'dds', 'ktx2', 'png', 'exr', 'tiff', 'tga', 'bmp', 'jpeg', 'webp'.",
         [](Call& call, WriteOptions& options) -> py::object {
             const Texture& texture = texture_from(call["texture"], "texture");
             const Container container = container_from(call["container"]);

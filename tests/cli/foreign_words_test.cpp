@@ -164,7 +164,6 @@ TEST(ForeignWords, AreAnswered) {
     says({"a.png", "-o", "a.ktx2", "--format", "uastc"},
          "; uastc is not written: make n.png, then run basisu -ktx2 -uastc -normal_map n.png\n");
     says({"a.png", "-o", "a.png", "--for", "ue5"}, "; here it is unreal\n");
-    says({"a.png", "-o", "a.webp"}, "; webp is not written: make n.png, then run cwebp -lossless -exact n.png");
     says({"a.png", "-o", "a.dds", "--quality", "90"}, "of blocks, it is --effort");
     for (const char* same : {"bc3n", "bc3nm", "3DC", "ATI2"})
         EXPECT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.dds", "--format", same}).code, 0) << same;

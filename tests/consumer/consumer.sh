@@ -241,7 +241,7 @@ packages)
         libopencolorio
     case $depends in *openimageio* | *assimp* | *draco*) fail "the library needs the readers: $depends" ;; esac
     package libtex-dev 'libtex1 (= '
-    package libtex-tools 'libtex1 (= ' libtiff6 libjpeg62-turbo libassimp libdraco libseccomp2
+    package libtex-tools 'libtex1 (= ' libtiff6 libjpeg62-turbo libwebp7 libassimp libdraco libseccomp2
     case $depends in *openimageio*) fail "the commands need OpenImageIO: $depends" ;; esac
     package libtex-reader-oiio libopenimageio libseccomp2
     python=$(/usr/bin/python3 -c 'import sys; print("%d.%d" % sys.version_info[:2])')

@@ -42,6 +42,7 @@ COMMANDS = [
     Dependency("fmt", "libfmt-dev", "", "fmt", "fmt"),
     Dependency("TIFF", "libtiff-dev", "", "libtiff", "libtiff"),
     Dependency("JPEG", "libjpeg62-turbo-dev", "", "libjpeg", "jpeg-turbo"),
+    Dependency("libwebp", "libwebp-dev", "", "libwebp", "webp"),
     Dependency("OpenImageIO", "libopenimageio-dev", "", "openimageio", "openimageio"),
     Dependency("libseccomp", "libseccomp-dev", "", "libseccomp", "libseccomp"),
     Dependency("assimp", "libassimp-dev", "", "assimp", "assimp"),

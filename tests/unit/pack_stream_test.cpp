@@ -288,7 +288,8 @@ TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
     for (const auto& [kind, encoding] : {Case{Container::png, Encoding::rgb8}, Case{Container::png, Encoding::rgb16},
                                          Case{Container::exr, Encoding::half}, Case{Container::exr, Encoding::float_},
                                          Case{Container::tiff, Encoding::rgb16}, Case{Container::tga, Encoding::ag8},
-                                         Case{Container::bmp, Encoding::rgb8}, Case{Container::jpeg, Encoding::rgb8}}) {
+                                         Case{Container::bmp, Encoding::rgb8}, Case{Container::jpeg, Encoding::rgb8},
+                                         Case{Container::webp, Encoding::rgb8}}) {
         SCOPED_TRACE(name_of(kContainerNames, kind));
         const std::string input = write_map(extent, kind, encoding);
         const auto report = pack_file(input, path("out"), Container::ktx2, options_);
@@ -301,7 +302,8 @@ TEST_F(PackStream, TakesEveryInputThatComesInOrder) {
 // The reader process encodes such pictures as a whole.
 TEST_F(PackStream, PicturesOfTheReaderHaveTheBytesOfTheVerbs) {
     const std::string plain = write_map({82, 56}, Container::png, Encoding::rgb8);
-    for (const Container container : {Container::tiff, Container::tga, Container::bmp, Container::jpeg}) {
+    for (const Container container :
+         {Container::tiff, Container::tga, Container::bmp, Container::jpeg, Container::webp}) {
         for (const bool builds : {false, true}) {
             SCOPED_TRACE(name_of(kContainerNames, container));
             options_.mip = builds ? std::optional(MipOptions()) : std::nullopt;

@@ -85,6 +85,7 @@ TEST(ReaderEncode, WritesExactlyWhatItReads) {
         {Container::tiff, Format::rgb8_unorm},  {Container::tiff, Format::rgba8_unorm},
         {Container::tiff, Format::rgb16_unorm}, {Container::tiff, Format::rgb16_float},
         {Container::tiff, Format::rgb32_float}, {Container::tiff, Format::r16_unorm},
+        {Container::webp, Format::rgb8_unorm},  {Container::webp, Format::rgba8_unorm},
     };
     for (const auto& [container, format] : pairs) {
         SCOPED_TRACE(testing::Message() << name_of(kContainerNames, container) << " " << name_of(kFormatNames, format));
@@ -96,6 +97,38 @@ TEST(ReaderEncode, WritesExactlyWhatItReads) {
         EXPECT_EQ(image->bits, format_info(format).bits);
         EXPECT_EQ(repack(*image, format), texture.levels.front().bytes);
     }
+}
+
+// WebP has no grey.
+TEST(ReaderEncode, GreyFillsThreeChannelsOfWebp) {
+    const Texture grey = texture_of(Format::r8_unorm, {33, 7});
+    const Result<Bytes> bytes = encode_with_reader(grey, Container::webp, quick_write());
+    ASSERT_TRUE(bytes) << bytes.error().message();
+    const Result<Image> image = read_encoded(*bytes);
+    ASSERT_TRUE(image) << image.error().message();
+    ASSERT_EQ(image->planes.size(), 3u);
+    for (const Plane<float>& plane : image->planes) {
+        for (int i = 0; i < 33; ++i)
+            EXPECT_EQ(static_cast<int>(std::lround(plane.at(i, 3) * 255.0f)),
+                      static_cast<int>(grey.levels[0].bytes[static_cast<std::size_t>(3 * 33 + i)]));
+    }
+}
+
+TEST(ReaderEncode, WebpThatEndsTooEarlyIsDamaged) {
+    Bytes bytes = encode_with_reader(texture_of(Format::rgb8_unorm, {64, 64}), Container::webp, quick_write()).value();
+    bytes.resize(bytes.size() / 2);
+    const Result<Image> image = read_encoded(bytes);
+    ASSERT_FALSE(image);
+    EXPECT_EQ(image.error().code, ErrorCode::bad_data);
+    EXPECT_EQ(image.error().reason, "damaged: the file ends too early");
+}
+
+TEST(ReaderEncode, WebpHasALongestSide) {
+    const Result<Bytes> bytes =
+        encode_with_reader(texture_of(Format::r8_unorm, {16384, 1}), Container::webp, quick_write());
+    ASSERT_FALSE(bytes);
+    EXPECT_EQ(bytes.error().code, ErrorCode::unsupported);
+    EXPECT_EQ(bytes.error().reason, "webp holds at most 16383 texels a side");
 }
 
 TEST(ReaderEncode, JpegStaysClose) {
@@ -157,7 +190,7 @@ TEST(ReaderEncode, JpegWithBytesLeftOverIsDamaged) {
 
 TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
     const Texture texture = texture_of(Format::rgb8_unorm, {16, 16});
-    const Container containers[] = {Container::tiff, Container::jpeg};
+    const Container containers[] = {Container::tiff, Container::jpeg, Container::webp};
     std::vector<Bytes> first;
     for (const Container container : containers)
         first.push_back(encode_with_reader(texture, container, quick_write()).value());
@@ -173,9 +206,10 @@ TEST(ReaderEncode, EqualTexturesGiveEqualBytesWithoutDates) {
 
 TEST(ReaderEncode, RefusesWhatTheContainerCannotHold) {
     const std::pair<Container, Format> pairs[] = {
-        {Container::jpeg, Format::rgba8_unorm}, {Container::tga, Format::rgb16_unorm},
-        {Container::bmp, Format::rgb32_float},  {Container::tiff, Format::bc3_unorm},
-        {Container::tiff, Format::rg8_unorm},   {Container::png, Format::rgb8_unorm}};
+        {Container::jpeg, Format::rgba8_unorm}, {Container::webp, Format::rgb16_unorm},
+        {Container::tga, Format::rgb16_unorm},  {Container::bmp, Format::rgb32_float},
+        {Container::tiff, Format::bc3_unorm},   {Container::tiff, Format::rg8_unorm},
+        {Container::png, Format::rgb8_unorm}};
     for (const auto& [container, format] : pairs) {
         const Result<Bytes> bytes = encode_with_reader(texture_of(format, {4, 4}), container, quick_write());
         ASSERT_FALSE(bytes);

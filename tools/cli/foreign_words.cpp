@@ -103,7 +103,6 @@ constexpr ForeignWord kForeignWords[] = {
 };
 
 constexpr UnwrittenType kUnwrittenTypes[] = {
-    {"webp", "cwebp -lossless -exact n.png -o n.webp"},
     {"avif", "avifenc --lossless n.png n.avif"},
     {"uastc", "basisu -ktx2 -uastc -normal_map n.png"},
     {"etc1s basis", "basisu -ktx2 -normal_map n.png"},

@@ -42,7 +42,7 @@ NativeType native_type(const OIIO::ImageSpec& spec) {
 }
 
 // The reason why a picture is refused, or an empty view.
-std::string_view unsupported_reason(const std::string& format, const OIIO::ImageSpec& spec) {
+std::string_view unsupported_reason(const OIIO::ImageSpec& spec) {
     const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
     const bool has_black =
         std::find(spec.channelnames.begin(), spec.channelnames.end(), "K") != spec.channelnames.end();
@@ -51,8 +51,6 @@ std::string_view unsupported_reason(const std::string& format, const OIIO::Image
     }
     if (spec.deep) return kDeepReason;
     if (spec.depth > 1) return "volumes are not read";
-    // This decoder cannot give unassociated alpha: it always multiplies colour by alpha.
-    if (format == "webp" && spec.alpha_channel >= 0) return "WebP pictures with alpha are not read";
     return {};
 }
 
@@ -121,7 +119,7 @@ bool decode_picture(const Task& task, ReaderHeader& header) {
     const std::string path = "/proc/self/fd/" + std::to_string(kInputDescriptor);
     if (!input->open(path, spec, config)) return refuse_picture(header, input->geterror());
 
-    if (const std::string_view reason = unsupported_reason(task.format, spec); !reason.empty()) {
+    if (const std::string_view reason = unsupported_reason(spec); !reason.empty()) {
         return refuse(header, ErrorCode::unsupported, std::string(reason));
     }
     const NativeType type = native_type(spec);

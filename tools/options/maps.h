@@ -48,7 +48,7 @@ private:
     std::string name_, pattern_;
 };
 
-// The format of a map of one channel: r32_float in exr, r8_unorm in tga, bmp and jpeg, else r16_unorm.
+// The format of a map of one channel: r32_float in exr, r8_unorm in tga, bmp, jpeg and webp, else r16_unorm.
 [[nodiscard]] Format map_format(Container container);
 
 }  // namespace tex::cli

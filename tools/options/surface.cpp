@@ -38,7 +38,7 @@ void StoredHeights::add(Command& command) {
     row.preset = "fit for integers, raw for floats";
     command.choice(format, "--format", "F", kHeightFormatNames, "how heights are stored")
         .often(3, "how heights are stored: r16, r8, float ...")
-        .preset = "float in exr; r8 in tga, bmp, jpeg; else r16";
+        .preset = "float in exr; r8 in tga, bmp, jpeg, webp; else r16";
 }
 
 void StoredHeights::parse(const std::string& text) {

@@ -14,6 +14,7 @@ struct Decoder {
 constexpr Decoder kDecoders[] = {
     {"tiff", decode_tiff, encode_tiff},
     {"jpeg", decode_jpeg, encode_jpeg},
+    {"webp", decode_webp, encode_webp},
     {"exr", decode_exr, nullptr},
 };
 

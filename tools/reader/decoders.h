@@ -21,6 +21,8 @@ bool decode_jpeg(const Task& task, ReaderHeader& header);
 bool decode_exr(const Task& task, ReaderHeader& header);  // answers with an uncompressed EXR file
 bool encode_tiff(const Task& task, ReaderHeader& header);
 bool encode_jpeg(const Task& task, ReaderHeader& header);
+bool decode_webp(const Task& task, ReaderHeader& header);
+bool encode_webp(const Task& task, ReaderHeader& header);
 
 // Names the channels: Y, or Y and A, R, G and B, or R, G, B and A.
 void name_channels(ReaderHeader& header);

@@ -87,7 +87,8 @@ bool decode_jpeg(const Task& task, ReaderHeader& header) {
     codec.err = handle_errors(errors);
     codec.client_data = &job;
     jpeg_create_decompress(&codec);
-    if (!open_jpeg_input(codec, bytes)) return refuse(header, ErrorCode::bad_data, "cannot be opened");
+    if (!read_whole_input(bytes)) return refuse(header, ErrorCode::bad_data, "cannot be opened");
+    jpeg_mem_src(&codec, bytes.data(), static_cast<unsigned long>(bytes.size()));
     constexpr unsigned kWholeMarker = 0xffff;
     jpeg_save_markers(&codec, JPEG_COM, kWholeMarker);
     jpeg_save_markers(&codec, JPEG_APP0 + 1, kWholeMarker);

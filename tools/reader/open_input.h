@@ -9,13 +9,12 @@
 
 #include <ImfIO.h>
 #include <ImfMultiPartInputFile.h>
-#include <jpeglib.h>  // needs cstdio
 #include <tiffio.h>
 
 namespace tex::reader {
 
-// False if it cannot be opened. `bytes` gets those of the file, and must outlive the codec.
-bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes);
+// False if it cannot be read, or is empty.
+bool read_whole_input(std::vector<unsigned char>& bytes);
 
 // Null if it cannot be opened.
 TIFF* open_tiff_input();

@@ -12,15 +12,13 @@ static_assert(kInputDescriptor == 4);
 
 }  // namespace
 
-bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes) {
+bool read_whole_input(std::vector<unsigned char>& bytes) {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(kInputPath, "rbe"), std::fclose);
     if (!file || std::fseek(file.get(), 0, SEEK_END) != 0) return false;
     const long size = std::ftell(file.get());
     if (size <= 0 || std::fseek(file.get(), 0, SEEK_SET) != 0) return false;
     bytes.resize(static_cast<std::size_t>(size));
-    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) return false;
-    jpeg_mem_src(&codec, bytes.data(), static_cast<unsigned long>(bytes.size()));
-    return true;
+    return std::fread(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
 }
 
 TIFF* open_tiff_input() { return TIFFOpen(kInputPath, "rm"); }  // m: the file may change while it is mapped

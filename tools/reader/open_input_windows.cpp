@@ -66,11 +66,9 @@ private:
 
 }  // namespace
 
-bool open_jpeg_input(jpeg_decompress_struct& codec, std::vector<unsigned char>& bytes) {
+bool read_whole_input(std::vector<unsigned char>& bytes) {
     bytes.resize(here().size());
-    if (bytes.empty() || !here().read(0, bytes.data(), bytes.size())) return false;
-    jpeg_mem_src(&codec, bytes.data(), static_cast<unsigned long>(bytes.size()));
-    return true;
+    return !bytes.empty() && here().read(0, bytes.data(), bytes.size());
 }
 
 TIFF* open_tiff_input() {

@@ -24,10 +24,10 @@ constexpr Encoding kRgbCodes[] = {rgb8, rgba8, rgb16, rgba16};
 constexpr Container kUnityTypes[] = {png, tiff, tga, bmp, jpeg, exr, dds};
 constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, dxt5nm, bc5};
 // Godot's materials rebuild z from R and G.
-constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, exr, dds, ktx2};
+constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, webp, exr, dds, ktx2};
 constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8};
 constexpr Container kGltfTypes[] = {png, jpeg};
-constexpr Container kThreeTypes[] = {png, jpeg, tga, tiff, exr, ktx2};
+constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 // KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};

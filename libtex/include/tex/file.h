@@ -25,8 +25,8 @@ namespace tex::inline v1 {
 //
 // The first bytes of a file, not its name, decide how it is read. PNG and EXR are decoded in this process, by libpng
 // and OpenEXR; DDS, KTX, TGA, BMP and ESRI ASCII grids by libtex. TIFF is decoded by libtiff, JPEG by libjpeg-turbo,
-// everything else (HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each file, under limits of
-// memory and time. If such a decoder crashes or hangs, the result is an Error.
+// WebP by libwebp, everything else (HDR, PSD ...) by OpenImageIO (tex-reader-oiio), in a separate process for each
+// file, under limits of memory and time. If such a decoder crashes or hangs, the result is an Error.
 
 // What integers in a file become.
 enum class FileValues { automatic, stored, unit };
@@ -121,14 +121,15 @@ struct ReaderInfo {
 //
 // Reads and writes textures as files: DDS, KTX2, and pictures.
 
-// File types that libtex writes, by extension: .dds .ktx2 .astc .png .exr .tif .tiff .tga .bmp .jpg .jpeg .r16 .r32
-enum class Container { dds, ktx2, astc, png, exr, tiff, tga, bmp, jpeg, r16, r32 };
+// File types that libtex writes, by extension: .dds .ktx2 .astc .png .exr .tif .tiff .tga .bmp .jpg .jpeg .r16
+// .r32 .webp
+enum class Container { dds, ktx2, astc, png, exr, tiff, tga, bmp, jpeg, r16, r32, webp };
 
 inline constexpr Named<Container> kContainerNames[] = {
     {Container::dds, "dds", ".dds"}, {Container::ktx2, "ktx2", ".ktx2"}, {Container::astc, "astc", ".astc"},
     {Container::png, "png", ".png"}, {Container::exr, "exr", ".exr"},    {Container::tiff, "tiff", ".tif, .tiff"},
     {Container::tga, "tga", ".tga"}, {Container::bmp, "bmp", ".bmp"},    {Container::jpeg, "jpeg", ".jpg, .jpeg"},
-    {Container::r16, "r16", ".r16"}, {Container::r32, "r32", ".r32"},
+    {Container::r16, "r16", ".r16"}, {Container::r32, "r32", ".r32"},    {Container::webp, "webp", ".webp"},
 };
 
 // The file type that the extension of `path` names (case does not matter); nullopt for any other extension.
@@ -136,8 +137,8 @@ inline constexpr Named<Container> kContainerNames[] = {
 
 // What a container can hold. ktx2: every encoding, mip levels. dds: the same without EAC and ASTC. astc: ASTC, one
 // level. exr: half, float, rgba16f, rgba32f; mip levels. png: rgb8, rgba8, rgb16, rgba16, ag8. tiff: those of exr and
-// png. tga: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2 can
-// hold rg8 and rg16.)
+// png. tga, webp: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2
+// can hold rg8 and rg16.)
 [[nodiscard]] TEX_API bool can_hold(Container container, Encoding encoding);
 [[nodiscard]] TEX_API bool can_hold(Container container, Format format);
 [[nodiscard]] TEX_API bool can_hold_levels(Container container);
@@ -149,8 +150,8 @@ inline constexpr Named<Container> kContainerNames[] = {
 // default. The others hold one level by default.
 [[nodiscard]] TEX_API bool can_hold_blocks(Container container);
 
-// The encoding if the user names none: dxt5nm in dds and ktx2, astc_4x4 in astc, rgb8 in png, tga, bmp, jpeg; rgb16 in
-// tiff; half in exr.
+// The encoding if the user names none: dxt5nm in dds and ktx2, astc_4x4 in astc, rgb8 in png, tga, bmp, jpeg, webp;
+// rgb16 in tiff; half in exr.
 [[nodiscard]] TEX_API Encoding default_encoding(Container container);
 
 enum class DdsHeader { legacy, dx10 };
@@ -171,7 +172,7 @@ struct WriteOptions {
     bool no_clobber = false;   // do not replace an existing file; report an error (io)
     bool follow_links = true;  // write the file that a symbolic link leads to; false replaces the link itself, and a
                                // FIFO or device that has the name
-    ReadOptions reader;        // the reader process also encodes TIFF and JPEG
+    ReadOptions reader;        // the reader process also encodes TIFF, JPEG and WebP
     // Called when a file is complete, before it takes its place at `path`. Until the call returns, its bytes can be
     // read from the file `complete`. If this returns an error, the old file stays, and the error is returned. Not
     // called for standard output, FIFOs and devices.

@@ -51,6 +51,7 @@ struct FileType {
                                       const WriteBytes& write) = nullptr;  // with Zstandard, when all bytes are known
     OpenTarget open_target = nullptr;
     const char* reader_name = nullptr;
+    int longest_side = kMaxExtent;  // in texels, that a file can hold
 };
 
 [[nodiscard]] const FileType& file_type_of(Container container);

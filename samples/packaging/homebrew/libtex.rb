@@ -27,6 +27,7 @@ class Libtex < Formula
   depends_on "openexr"
   depends_on "openimageio"
   depends_on "tbb"
+  depends_on "webp"
   depends_on "zstd"
 
   COMMANDS = %w[

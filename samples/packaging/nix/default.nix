@@ -18,6 +18,7 @@
   libpng,
   libseccomp,
   libtiff,
+  libwebp,
   nlohmann_json,
   onetbb,
   opencolorio,
@@ -71,6 +72,7 @@ stdenv.mkDerivation {
     libpng
     libseccomp
     libtiff
+    libwebp
     nlohmann_json
     onetbb
     opencolorio

@@ -79,6 +79,12 @@ Result<ReaderPicture> ReaderPicture::open(Container container, const TextureHead
     if (Result<void> held = check_holds(type, head.format, options); !held) return held.error();
     if (type.reader_name == nullptr)
         return Error{ErrorCode::unsupported, {}, "nothing that the reader process encodes"};
+    if (std::max(head.extent.width, head.extent.height) > type.longest_side) {
+        return Error{ErrorCode::unsupported,
+                     {},
+                     std::string(name_of(kContainerNames, container)) + " holds at most " +
+                         std::to_string(type.longest_side) + " texels a side"};
+    }
     ReaderHeader header;
     header.quality = static_cast<std::uint32_t>(options.jpeg_quality);
     header.width = head.extent.width;

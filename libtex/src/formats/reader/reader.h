@@ -41,7 +41,7 @@ private:
     std::uint64_t row_bytes_ = 0;
 };
 
-// Encodes the base level of a texture as tiff or jpeg: 8- and 16-bit unorm, half and float, as far as the
+// Encodes the base level of a texture as tiff, jpeg or webp: 8- and 16-bit unorm, half and float, as far as the
 // container can hold them (see can_hold()). The bytes contain no date, host or program name. JPEG: no chroma
 // subsampling. TIFF: deflate. Errors: as ReaderPicture.
 Result<std::vector<std::byte>> encode_with_reader(const Texture& texture, Container container,

@@ -63,7 +63,7 @@ constexpr Mark kMarks[] = {
 };
 
 // The types that tex-reader decodes and encodes. tex-reader-oiio does the others.
-constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg", "exr"};
+constexpr std::string_view kOfTexReader[] = {"tiff", "jpeg", "webp", "exr"};
 
 std::optional<std::string> format_of(std::span<const std::byte> head) {
     const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());

@@ -23,7 +23,7 @@ namespace tex::inline v1 {
 // Errors: io             the reader program is not there or cannot be started
 //         bad_data       not a picture; damaged; the decoder crashed, did not end within options.reader_timeout, or
 //                        returned invalid data
-//         unsupported    CMYK; WebP with alpha; more than kMaxReaderChannels channels; too large; more memory than
+//         unsupported    CMYK; animated WebP; more than kMaxReaderChannels channels; too large; more memory than
 //                        options.reader_memory
 //         out_of_memory
 Result<std::unique_ptr<RowSource>> open_reader_rows(InputFile& file, const ReadOptions& options);
