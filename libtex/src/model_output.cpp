@@ -75,8 +75,8 @@ Result<void> list_files(const std::string& input, const std::string& output, Pre
     return {};
 }
 
-Result<Prepared> prepare(const std::string& input, const std::string& output,
-                         const std::vector<ModelPicture>& pictures, const MeshReadOptions& options) {
+Result<Prepared> prepare(const std::string& input, const std::string& output, const ModelChanges& changes,
+                         const MeshReadOptions& options) {
     if (input == "-") return Error{ErrorCode::unsupported, input, "a model cannot come from standard input"};
     const auto bytes = read_at_most(input, options.max_bytes);
     if (!bytes) return bytes.error();
@@ -87,7 +87,7 @@ Result<Prepared> prepare(const std::string& input, const std::string& output,
     std::error_code error;
     place.is_same_folder = fs::equivalent(folder_of(input), folder_of(output), error);
     place.name = output.substr(name_begin(output));
-    auto made = write_gltf(*bytes, load, place, pictures);
+    auto made = write_gltf(*bytes, load, place, changes);
     if (!made) return made.error().of(input);
     Prepared prepared{std::move(*made), {}};
     if (auto listed = list_files(input, output, prepared); !listed) return listed.error();
@@ -156,23 +156,22 @@ Result<void> write_all(const Prepared& prepared, const WriteOptions& writing) {
 
 }  // namespace
 
-Result<ModelFiles> model_files(const std::string& input, const std::string& output,
-                               const std::vector<ModelPicture>& pictures, const MeshReadOptions& options) {
+Result<ModelFiles> model_files(const std::string& input, const std::string& output, const ModelChanges& changes,
+                               const MeshReadOptions& options) {
     return no_throw([&]() -> Result<ModelFiles> {
-        auto prepared = prepare(input, output, pictures, options);
+        auto prepared = prepare(input, output, changes, options);
         if (!prepared) return prepared.error();
         return std::move(prepared->files);
     });
 }
 
-Result<ModelFiles> write_model(const std::string& input, const std::string& output,
-                               const std::vector<ModelPicture>& pictures, const MeshReadOptions& options,
-                               const WriteOptions& writing) {
+Result<ModelFiles> write_model(const std::string& input, const std::string& output, const ModelChanges& changes,
+                               const MeshReadOptions& options, const WriteOptions& writing) {
     return no_throw([&]() -> Result<ModelFiles> {
-        for (const ModelPicture& picture : pictures) {
+        for (const ModelPicture& picture : changes.pictures) {
             if (picture.bytes.empty()) return Error{ErrorCode::bad_option, output, "a picture has no bytes"};
         }
-        auto prepared = prepare(input, output, pictures, options);
+        auto prepared = prepare(input, output, changes, options);
         if (!prepared) return prepared.error();
         if (auto written = write_all(*prepared, writing); !written) return written.error();
         return std::move(prepared->files);

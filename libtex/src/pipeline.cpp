@@ -40,8 +40,8 @@ Result<void> validate(const BakeFileOptions& options) {
 }
 
 Result<void> validate(const PackFileOptions& options) {
-    const bool has_more = options.level_names || options.roughness || options.blue_file || options.alpha_file ||
-                          options.length_file;
+    const bool has_more =
+        options.level_names || options.roughness || options.blue_file || options.alpha_file || options.length_file;
     if (auto valid = check_one_output(options.write, has_more); !valid) return valid;
     if (options.level && *options.level < 0) return bad_option("level: must be 0 or more");
     if (options.scale) {

@@ -28,7 +28,8 @@ class ModelOutputs : public testing::Test {
 protected:
     // Two maps: one with green up, and one with green down.
     ModelOutputs() {
-        does("cp " TEX_SOURCE_DIR "/samples/broken/N80*.glb .; cp " TEX_SOURCE_DIR "/samples/bricks.png .; "
+        does("cp " TEX_SOURCE_DIR "/samples/broken/N80*.glb .; cp " TEX_SOURCE_DIR
+             "/samples/bricks.png .; "
              "bake-normals bricks.png -o up.png --bumpiness 12; pack-normals up.png -o down.png --y down; mkdir maps; "
              "convert up.png -strip maps/up.png; convert down.png -strip maps/down.png");
         write_model_of("m.gltf", {"maps/up.png", "maps/down.png"});
@@ -74,8 +75,8 @@ protected:
 
 TEST_F(ModelOutputs, PicturesAreWhatTheCommandMakesOfTheirFiles) {
     extract("N804-scale-not-positive.glb", "inside.png");
-    for (const std::string options :
-         {"--y-in down --y up", "--normalize", "--max-size 32", "--format rgb16", "--format rgba8 --y-in up --y down"}) {
+    for (const std::string options : {"--y-in down --y up", "--normalize", "--max-size 32", "--format rgb16",
+                                      "--format rgba8 --y-in up --y down"}) {
         does("pack-normals N804*.glb -o model.glb " + options);
         does("pack-normals inside.png -o file.png " + options);
         extract("model.glb", "model.png");
@@ -138,7 +139,8 @@ TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");
     refuses("pack-normals up.png -o x.glb", 2, "up.png: is not a glTF model, and only a model can become a model");
     refuses("pack-normals N802*.glb N804*.glb -o x.glb", 2, "-o takes one input, 2 are given");
-    refuses("pack-normals N804*.glb -o x.glb --format bc5", 2, "models hold normals as rgb8, rgba8, rgb16, rgba16, not");
+    refuses("pack-normals N804*.glb -o x.glb --format bc5", 2,
+            "models hold normals as rgb8, rgba8, rgb16, rgba16, not");
     refuses("pack-normals N804*.glb -o x.glb --container dds", 2, "the pictures of a model are PNG or JPEG, not dds");
     refuses("pack-normals N804*.glb -o x.glb --container jpeg --format rgb16", 2, "jpeg files cannot hold rgb16");
     refuses("pack-normals N804*.glb -o x.glb --mips all", 2, "--mips: models hold no levels: engines build them");
@@ -224,8 +226,7 @@ TEST_F(ModelOutputs, FixesOfCheckNormalsMendModels) {
 TEST_F(ModelOutputs, RealModelsKeepTheirGeometry) {
     if (!fs::exists(kMeshes)) GTEST_SKIP() << "no ../shared/data";
     const std::vector<fs::path> models = {kMeshes / "FlightHelmet/FlightHelmet.gltf",
-                                          kMeshes / "Suzanne/02_suzanne.gltf",
-                                          kMeshes / "NormalTangentTest.glb",
+                                          kMeshes / "Suzanne/02_suzanne.gltf", kMeshes / "NormalTangentTest.glb",
                                           kMeshes / "AssetGenerator_plane/Mesh_PrimitiveAttribute_06.gltf"};
     for (const fs::path& model : models) {
         const std::string folder = model.stem();

@@ -72,7 +72,7 @@ void put_pictures(std::span<const std::byte> bytes, const tex::LoadBeside& load)
                 maps[other].material != maps[k].material || maps[other].slot != maps[k].slot;
             if (maps[other].image == maps[k].image && is_of_another_slot) picture.maps.push_back(maps[other]);
         }
-        const auto written = tex::write_gltf(bytes, load, {true, "out.gltf"}, {picture});
+        const auto written = tex::write_gltf(bytes, load, {true, "out.gltf"}, {{picture}});
         if (!written) continue;
         std::vector<tex::ModelImage> images;
         const auto again = maps_in(written->bytes, &images);

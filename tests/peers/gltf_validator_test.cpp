@@ -298,8 +298,7 @@ std::vector<tex::ModelPicture> pictures_of(const tex::Model& model, const std::v
         tex::PackFileOptions options;
         options.max_side = 64;
         options.write.into = std::make_shared<std::vector<std::byte>>();
-        if (image.file.empty())
-            options.source.read.bytes = std::make_shared<const std::vector<std::byte>>(image.bytes);
+        if (image.file.empty()) options.source.read.bytes = std::make_shared<const std::vector<std::byte>>(image.bytes);
         if (!tex::pack_file(image.file, "picture", tex::Container::png, options)) return {};
         pictures.push_back({{map}, tex::Container::png, *options.write.into});
     }
@@ -329,7 +328,7 @@ TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithOtherPictures) {
             if (pictures.empty()) continue;
             const fs::path output = scratch_.path("out/" + std::to_string(after.size())) / file.filename();
             fs::create_directories(output.parent_path());
-            const auto written = tex::write_model(file.string(), output.string(), pictures);
+            const auto written = tex::write_model(file.string(), output.string(), {pictures});
             ASSERT_TRUE(written) << written.error().message();
             const auto again = tex::read_model_maps(output.string());
             ASSERT_TRUE(again) << again.error().message();

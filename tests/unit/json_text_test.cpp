@@ -12,7 +12,8 @@ namespace tex {
 namespace {
 
 TEST(JsonText, KeepsWhatDoesNotChange) {
-    const std::string text = " {\n  \"a\" : [ 1.0e+2 , -0.0,\t{\"b\":\"]}\\\"\" } ],\n  \"c\\u0064\": { },\r\n  \"e\": [ ]\n}\n ";
+    const std::string text =
+        " {\n  \"a\" : [ 1.0e+2 , -0.0,\t{\"b\":\"]}\\\"\" } ],\n  \"c\\u0064\": { },\r\n  \"e\": [ ]\n}\n ";
     JsonText json(text);
     EXPECT_EQ(json.text(), text);
     EXPECT_EQ(json.root().size(), 3u);
@@ -66,7 +67,8 @@ TEST(JsonText, EditsAreThoseOfAParser) {
     std::minstd_rand random(3);
     const auto below = [&](std::size_t n) { return random() % n; };
     for (int round = 0; round < 500; ++round) {
-        nlohmann::ordered_json model = {{"a", {1, "x,]", nullptr}}, {"b", {{"c", 1.5}, {"d", {{"e", "}"}}}}}, {"f", {}}};
+        nlohmann::ordered_json model = {
+            {"a", {1, "x,]", nullptr}}, {"b", {{"c", 1.5}, {"d", {{"e", "}"}}}}}, {"f", {}}};
         const std::string text = model.dump(round % 3 == 0 ? 2 : -1);
         JsonText json(text);
         for (int step = 0; step < 8; ++step) {

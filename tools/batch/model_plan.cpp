@@ -24,9 +24,7 @@ OutputOptions picture_options(const FileOptions& files, const OutputOptions& out
     if (output.engines.size() > 1) throw UsageError("--for", "a model is for one engine");
     OutputOptions own = output.of(output.engines_or_none().front());
     const std::string& name = files.output.empty() ? files.name : files.output;
-    const auto refuse = [&](std::string_view what) {
-        throw UsageError(fmt::format("{}: {}", printable(name), what));
-    };
+    const auto refuse = [&](std::string_view what) { throw UsageError(fmt::format("{}: {}", printable(name), what)); };
     const Container container = own.made_container().value_or(Container::png);
     if (container != Container::png && container != Container::jpeg) {
         refuse(fmt::format("the pictures of a model are PNG or JPEG, not {}", name_of(kContainerNames, container)));
@@ -73,8 +71,7 @@ std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOption
     std::vector<std::vector<ModelFile>> all_files;
     for (const Input& input : inputs) {
         if (!is_model(input.name)) {
-            throw UsageError(printable(input.name),
-                             "is not a glTF model, and only a model can become a model");
+            throw UsageError(printable(input.name), "is not a glTF model, and only a model can become a model");
         }
         Task task{input.name, output_for(input, files), *own.container};
         task.engine = own.engine;

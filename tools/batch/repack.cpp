@@ -112,7 +112,8 @@ Result<void> PackCommand::pack_image(Job& job, const std::vector<std::shared_ptr
 
 Result<void> PackCommand::process_model(Job& job) {
     const ModelOutput& model = *job.task.model_output;
-    std::vector<ModelPicture> pictures = model.pictures(job.task.container);
+    ModelChanges changes = model.changes(job.task.container);
+    std::vector<ModelPicture>& pictures = changes.pictures;
     for (std::size_t k = 0; k < pictures.size(); ++k) {
         const double done = 0.95 * static_cast<double>(k + 1) / static_cast<double>(pictures.size());
         if (auto packed = pack_image(job, model.images[k], job.until(done), pictures[k]); !packed) return packed;
@@ -124,7 +125,7 @@ Result<void> PackCommand::process_model(Job& job) {
     if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     MeshReadOptions how;
     how.reader = job.read_options;
-    const auto written = write_model(job.task.input, job.task.output, pictures, how, job.write_options);
+    const auto written = write_model(job.task.input, job.task.output, changes, how, job.write_options);
     if (!written) return written.error();
     job.wrote(job.task.output);
     for (const ModelFile& file : written->files) {

@@ -280,8 +280,9 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
                         shell_word(report.material), filled_in(options, *target, report, require), type),
             true};
     if (is_about_mirrors(id) && !(report.pair && report.pair->decides())) {
-        fix.advice = "If dents become bumps, red is mirrored instead, as in a picture that was flipped: correct the "
-                     "image in the program that made it";
+        fix.advice =
+            "If dents become bumps, red is mirrored instead, as in a picture that was flipped: correct the "
+            "image in the program that made it";
     }
     return fix;
 }

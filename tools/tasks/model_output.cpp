@@ -33,8 +33,7 @@ Result<ModelOutput> output_of(const std::string& input, const std::string& mater
     const auto model = maps.front().model->read(LastModel::Part::maps, options.reader);
     if (!model) return model.error();
     for (const Input& map : maps) {
-        if (map.model->map->image < 0)
-            return Error{ErrorCode::bad_data, map.model->name(), "its texture has no image"};
+        if (map.model->map->image < 0) return Error{ErrorCode::bad_data, map.model->name(), "its texture has no image"};
         const auto group = std::find_if(output.images.begin(), output.images.end(), [&](const auto& known) {
             return share_an_image(**model, *known.front()->map, *map.model->map);
         });
@@ -58,10 +57,10 @@ bool is_for_models(Encoding encoding) {
            encoding == Encoding::rgba16;
 }
 
-std::vector<ModelPicture> ModelOutput::pictures(Container container) const {
-    std::vector<ModelPicture> all;
+ModelChanges ModelOutput::changes(Container container) const {
+    ModelChanges all;
     for (const auto& group : images) {
-        ModelPicture& picture = all.emplace_back();
+        ModelPicture& picture = all.pictures.emplace_back();
         picture.container = container;
         for (const auto& map : group) picture.maps.push_back(*map->map);
     }
@@ -73,7 +72,7 @@ std::vector<ModelFile> set_model_output(Task& task, const std::string& material,
     task.model_output = output;
     auto made = output_of(task.input, material, options);
     std::optional<Result<ModelFiles>> files;
-    if (made) files = model_files(task.input, task.output, made->pictures(task.container), options);
+    if (made) files = model_files(task.input, task.output, made->changes(task.container), options);
     if (!made || !*files) {
         output->error = made ? files->error() : made.error();
         return {};

@@ -28,8 +28,8 @@ struct ModelOutput {
     std::vector<std::vector<std::shared_ptr<const ModelInput>>> images;
     std::optional<Error> error = {};  // why nothing can be written
 
-    // The pictures, without their bytes. Maps of a group get the same.
-    [[nodiscard]] std::vector<ModelPicture> pictures(Container container) const;
+    // A picture for each group, without its bytes.
+    [[nodiscard]] ModelChanges changes(Container container) const;
 };
 
 // Sets the model of a task whose input and output are models, and the files beside them: those that the task reads, and

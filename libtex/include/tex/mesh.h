@@ -872,6 +872,11 @@ struct ModelPicture {
     std::vector<std::byte> bytes = {};     // of the file
 };
 
+// What changes in a model.
+struct ModelChanges {
+    std::vector<ModelPicture> pictures;
+};
+
 // A file of the model that is written.
 struct ModelFile {
     std::string path;
@@ -892,8 +897,7 @@ struct ModelFiles {
 // has an extension that models do not use); bad_option (a map is not one of the model, or has no image; two pictures
 // are for one map; another container).
 [[nodiscard]] TEX_API Result<ModelFiles> model_files(const std::string& input, const std::string& output,
-                                                     const std::vector<ModelPicture>& pictures,
-                                                     const MeshReadOptions& options = {});
+                                                     const ModelChanges& changes, const MeshReadOptions& options = {});
 
 // Writes the model `input` to `output`, with the files beside it. Missing folders below that of the output are created.
 //
@@ -905,8 +909,7 @@ struct ModelFiles {
 // Errors: those of model_files() and write_file(); bad_data (a buffer with a picture is damaged); unsupported (a GLB
 // file would have 4 GiB or more).
 [[nodiscard]] TEX_API Result<ModelFiles> write_model(const std::string& input, const std::string& output,
-                                                     const std::vector<ModelPicture>& pictures,
-                                                     const MeshReadOptions& options = {},
+                                                     const ModelChanges& changes, const MeshReadOptions& options = {},
                                                      const WriteOptions& writing = {});
 
 }  // namespace tex::inline v1

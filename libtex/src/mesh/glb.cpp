@@ -24,7 +24,8 @@ Result<std::vector<std::byte>> with_chunks(std::span<const std::byte> file, cons
                                            const std::optional<std::vector<std::byte>>& binary) {
     constexpr std::size_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
     const auto as_bytes = [&] { return std::as_bytes(std::span(json)); };
-    if (file.size() < 4 || file[0] != std::byte{'g'}) return std::vector<std::byte>(as_bytes().begin(), as_bytes().end());
+    if (file.size() < 4 || file[0] != std::byte{'g'})
+        return std::vector<std::byte>(as_bytes().begin(), as_bytes().end());
     json.resize(json.find_last_not_of(' ') + 1);
     std::size_t rest = 20 + chunks.json.size();
     std::vector<std::byte> made(file.begin(), file.begin() + 8);

@@ -82,7 +82,7 @@ std::vector<std::string> GltfNames::kept() const {
 }
 
 bool GltfNames::is_usual(std::string_view path) {
-    constexpr std::array<std::string_view, 16> kUsual = {".bin",  ".glbin", ".png", ".jpg", ".jpeg", ".webp",
+    constexpr std::array<std::string_view, 16> kUsual = {".bin",  ".glbin", ".png", ".jpg",  ".jpeg",  ".webp",
                                                          ".ktx2", ".ktx",   ".dds", ".avif", ".basis", ".bmp",
                                                          ".tga",  ".gif",   ".tif", ".tiff"};
     std::string extension(path.substr(extension_begin(path)));

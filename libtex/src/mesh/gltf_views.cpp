@@ -122,8 +122,8 @@ Result<std::vector<std::byte>> GltfViews::remake(std::size_t buffer, const Chang
     }
     made.insert(made.end(), bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end());
     const auto moved = [&](std::size_t offset) {
-        const auto after = std::partition_point(steps.begin(), steps.end(),
-                                                [&](const Step& step) { return step.end <= offset; });
+        const auto after =
+            std::partition_point(steps.begin(), steps.end(), [&](const Step& step) { return step.end <= offset; });
         if (after == steps.begin()) return offset;
         const auto last = static_cast<std::size_t>(after - steps.begin() - 1);
         return offset - steps[last].end + ends[last];
@@ -136,8 +136,7 @@ Result<std::vector<std::byte>> GltfViews::remake(std::size_t buffer, const Chang
         if (!range.extension.empty()) place = place->member("extensions")->member(range.extension);
         place->set("byteOffset", std::to_string(moved(range.begin)));
     }
-    for (const Step& step : steps)
-        list.element(step.view)->set("byteLength", std::to_string(step.bytes.size()));
+    for (const Step& step : steps) list.element(step.view)->set("byteLength", std::to_string(step.bytes.size()));
     for (std::size_t k = 0; k < changes.added.size(); ++k) {
         made.resize(aligned(made.size()));
         added_[changes.numbers[k]] = "{\"buffer\":" + std::to_string(buffer) +

@@ -60,8 +60,8 @@ private:
     // Where a picture is from now on.
     struct Home {
         std::optional<std::int64_t> view;
-        std::string uri;     // of data or, if it is in a file, empty until files have names
-        std::string file;    // that it was in
+        std::string uri;   // of data or, if it is in a file, empty until files have names
+        std::string file;  // that it was in
         std::vector<std::int64_t> images;
     };
 
@@ -216,7 +216,8 @@ Result<void> GltfWriter::change_buffers() {
         if (!uri) {
             changed_binary_ = std::move(buffer.bytes);
         } else if (is_data_uri(*uri)) {
-            text_.member("buffers")->element(buffer.index)
+            text_.member("buffers")
+                ->element(buffer.index)
                 ->set("uri", '"' + encode_data_uri(media_type_of_uri(*uri), buffer.bytes) + '"');
         } else {
             names_.forget(*path_of_uri(*uri));
@@ -232,8 +233,7 @@ void GltfWriter::name_files() {
         const std::string path = *path_of_uri(*root_["buffers"][buffer.index]["uri"].text());
         const std::size_t dot = path.rfind('.');
         const std::string name = names_.name_for(path, dot == std::string::npos ? "" : path.substr(dot));
-        if (name != path)
-            text_.member("buffers")->element(buffer.index)->set("uri", json_string(uri_of_path(name)));
+        if (name != path) text_.member("buffers")->element(buffer.index)->set("uri", json_string(uri_of_path(name)));
         beside_.push_back({name, path, true, std::move(buffer.bytes)});
     }
     for (std::size_t p = 0; p < homes_.size(); ++p) {
@@ -251,7 +251,7 @@ void GltfWriter::name_picture(std::size_t picture) {
     const Container container = pictures_[picture].container;
     const std::size_t dot = home.file.rfind('.');
     const bool has_extension = container_of(home.file) == container;  // .jpeg stays .jpeg
-    const std::string extension = has_extension                   ? home.file.substr(dot)
+    const std::string extension = has_extension                  ? home.file.substr(dot)
                                   : container == Container::jpeg ? std::string(".jpg")
                                                                  : std::string(".png");
     const std::string name = names_.name_for(home.file, extension);
@@ -369,14 +369,14 @@ Result<void> GltfWriter::change() {
 }  // namespace
 
 Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
-                               const std::vector<ModelPicture>& pictures) {
+                               const ModelChanges& changes) {
     const auto chunks = gltf_chunks(file);
     if (!chunks) return chunks.error();
     const auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
     if (auto known = check_asset(document->root()); !known) return known.error();
     JsonText text(chunks->json);
-    GltfWriter writer(document->root(), text, chunks->binary, load, place, pictures);
+    GltfWriter writer(document->root(), text, chunks->binary, load, place, changes.pictures);
     if (auto changed = writer.change(); !changed) return changed.error();
     auto bytes = with_chunks(file, *chunks, text.text(), writer.binary());
     if (!bytes) return bytes.error();

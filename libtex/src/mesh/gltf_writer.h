@@ -19,9 +19,9 @@ namespace tex::inline v1 {
 
 // A file beside the model that is written, by relative paths.
 struct BesideModel {
-    std::string path;              // from the output
-    std::string from;              // from the input: what it is a copy of, or whose place it takes
-    bool is_changed = false;       // otherwise it is a copy
+    std::string path;         // from the output
+    std::string from;         // from the input: what it is a copy of, or whose place it takes
+    bool is_changed = false;  // otherwise it is a copy
     std::vector<std::byte> bytes = {};
 };
 
@@ -31,9 +31,9 @@ struct WrittenGltf {
     std::vector<std::string> outside;  // GltfNames::outside()
 };
 
-// The file with these pictures, as model output in mesh.h describes. If the output is in the folder of the input,
+// The file with these changes, as model output in mesh.h describes. If the output is in the folder of the input,
 // copies are left out. Errors: those of read_model_maps(), `load`; bad_option, unsupported as write_model().
 Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
-                               const std::vector<ModelPicture>& pictures);
+                               const ModelChanges& changes);
 
 }  // namespace tex::inline v1
