@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh.h>
+#include <tex/pipeline.h>
 
 #include <filesystem>
 #include <optional>
@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <tex/file.h>
+#include <tex/mesh.h>
 
 #include "files/atomic_file.h"
 #include "files/beside.h"

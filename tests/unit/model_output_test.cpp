@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh.h>
+#include <tex/pipeline.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/mesh.h>
 #include <nlohmann/json.hpp>
 
 #include "scratch.h"
@@ -109,8 +110,8 @@ protected:
     [[nodiscard]] Chunks chunks(const std::string& name) const { return Chunks(read(name)); }
 };
 
-constexpr const char* kOneMaterial =
-    R"([{"name":"a","normalTexture":{"index":0,"scale":0.50},"pbrMetallicRoughness":{"baseColorTexture":{"index":1}}}])";
+constexpr const char* kOneMaterial = R"([{"name":"a","normalTexture":{"index":0,"scale":0.50},)"
+                                     R"("pbrMetallicRoughness":{"baseColorTexture":{"index":1}}}])";
 
 TEST_F(ModelOutput, AllElseKeepsItsBytes) {
     write_glb(kOneMaterial);

@@ -10,6 +10,7 @@
 
 #include <tex/format.h>
 #include <tex/mesh.h>
+#include <tex/pipeline.h>
 
 #include "tasks/model_input.h"
 #include "tasks/task.h"

@@ -7,15 +7,18 @@
 namespace tex::inline v1 {
 namespace {
 
+// Chunks have a multiple of 4 bytes.
+std::size_t padded(std::size_t bytes) { return bytes + (4 - bytes % 4) % 4; }
+
 void put_word(std::vector<std::byte>& bytes, std::size_t word) {
     for (int k = 0; k < 4; ++k) bytes.push_back(static_cast<std::byte>(word >> (8 * k) & 0xff));
 }
 
 void put_chunk(std::vector<std::byte>& bytes, std::size_t type, std::span<const std::byte> content, std::byte filler) {
-    put_word(bytes, (content.size() + 3) / 4 * 4);
+    put_word(bytes, padded(content.size()));
     put_word(bytes, type);
     bytes.insert(bytes.end(), content.begin(), content.end());
-    bytes.resize((bytes.size() + 3) / 4 * 4, filler);
+    bytes.resize(padded(bytes.size()), filler);
 }
 
 }  // namespace

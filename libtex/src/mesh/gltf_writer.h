@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/pipeline.h>
 #include <tex/types.h>
 
 #include "mesh/gltf_buffers.h"
@@ -31,7 +31,7 @@ struct WrittenGltf {
     std::vector<std::string> outside;  // GltfNames::outside()
 };
 
-// The file with these changes, as model output in mesh.h describes. If the output is in the folder of the input,
+// The file with these changes, as model output in pipeline.h describes. If the output is in the folder of the input,
 // copies are left out. Errors: those of read_model_maps(), `load`; bad_option, unsupported as write_model().
 Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
                                const ModelChanges& changes);
