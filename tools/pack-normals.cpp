@@ -23,6 +23,7 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{Container::dds};
         rules.models = material_;
+        rules.writes_models = true;
         rules.amend = [this](cli::Task& task) { others.amend(task); };
         return rules;
     }
@@ -37,6 +38,7 @@ private:
 
 PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("normal maps, and glTF models with their maps; - is standard input");
+    command.usage("MODEL -o MODEL");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
@@ -57,11 +59,17 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
                     "Occlusion and heights beside the normals.");
     command.example("pack-normals model.glb --out-dir out --for unreal --name '{stem}_{material}.{type}'",
                     "Every normal map that the materials of a model use.");
+    command.example("pack-normals scene.glb -o fixed.glb --y-in measured --y up",
+                    "A model whose maps may have green down.");
 }
 
 Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {
-    const bool has_models = std::any_of(tasks.begin(), tasks.end(), [](const cli::Task& task) { return task.model; });
-    if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
+    const auto has_model = [](const cli::Task& task) { return task.model || task.model_output; };
+    if (!material_.empty() && std::none_of(tasks.begin(), tasks.end(), has_model))
+        throw cli::UsageError("--material needs a model");
+    const auto is_model = [](const cli::Task& task) { return task.model_output != nullptr; };
+    if (mips_.levels.value_or(1) != 1 && !mips_.keep && std::any_of(tasks.begin(), tasks.end(), is_model))
+        throw cli::UsageError("--mips", "models hold no levels: engines build them");
     mips_.check(tasks);
     mips_.check_builds(command, tasks);
     return {};

@@ -219,6 +219,8 @@ void add_report(Module& module) {
         .property("file", "str", "The file's name.", [](const CheckReport& r) { return str_of(r.file); })
         .property("map", "str", "Of a map in a model: its material and image; else empty.",
                   [](const CheckReport& r) { return str_of(r.map); })
+        .property("material", "str", "Of such a map: its material, by name or number; empty if that has several maps.",
+                  [](const CheckReport& r) { return str_of(r.material); })
         .property("findings", "list[Finding]", "By rule, then level.", [](const CheckReport& r) { return r.findings; })
         .property("explained", "int", "Findings left out because another one explains them.",
                   [](const CheckReport& r) { return r.explained; })

@@ -286,6 +286,7 @@ template <class F>
 void each_part(CheckReport& o, F& f) {
     f(o.file);
     f(o.map);
+    f(o.material);
     f(o.findings);
     f(o.explained);
     f(o.format);

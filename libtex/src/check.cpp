@@ -220,6 +220,17 @@ void add_not_examined(const Error& error, const CheckOptions& options, CheckRepo
     for (Finding& finding : findings.take(explained)) report.findings.push_back(std::move(finding));
 }
 
+// CheckReport::material.
+std::string material_of_one_map(const Model& model, const ModelMap& map) {
+    const auto is_of_same = [&](const ModelMap& other) { return other.material == map.material; };
+    if (std::count_if(model.maps.begin(), model.maps.end(), is_of_same) > 1) return {};
+    const auto& materials = model.mesh.materials;
+    const std::string& name = materials[static_cast<std::size_t>(map.material)].name;
+    const auto has_name = [&](const MeshMaterial& other) { return other.name == name; };
+    const bool is_unique = std::count_if(materials.begin(), materials.end(), has_name) == 1;
+    return !name.empty() && is_unique ? name : selection_of(model, map).material;
+}
+
 }  // namespace
 
 Result<CheckReport> check_map(const Model& model, const ModelMap& map, const ModelCheckOptions& options,
@@ -234,6 +245,7 @@ Result<CheckReport> check_map(const Model& model, const ModelMap& map, const Mod
         }
         const auto finished = [&](CheckReport report) {
             report.map = map_name(model, map);
+            report.material = material_of_one_map(model, map);
             return report;
         };
         const auto texture = read_map(model, map, read);

@@ -25,15 +25,24 @@ Result<void> check_no_heights(const OtherInputs& others) {
     return {};
 }
 
+// Errors: bad_option if there are several outputs, and the bytes of one are to stay in memory.
+Result<void> check_one_output(const WriteOptions& write, bool has_more) {
+    return write.into && has_more ? Result<void>(bad_option("into: the output must be one file")) : Result<void>();
+}
+
 }  // namespace
 
 Result<void> validate(const BakeFileOptions& options) {
+    if (auto valid = check_one_output(options.write, static_cast<bool>(options.level_names)); !valid) return valid;
     if (auto valid = validate(options.bake); !valid) return valid;
     if (auto valid = validate(options.mip); !valid) return valid;
     return validate(options.pack);
 }
 
 Result<void> validate(const PackFileOptions& options) {
+    const bool has_more =
+        options.level_names || options.roughness || options.blue_file || options.alpha_file || options.length_file;
+    if (auto valid = check_one_output(options.write, has_more); !valid) return valid;
     if (options.level && *options.level < 0) return bad_option("level: must be 0 or more");
     if (options.scale) {
         if (auto valid = check_fields(*options.scale); !valid) return valid;
@@ -47,6 +56,7 @@ Result<void> validate(const PackFileOptions& options) {
 }
 
 Result<void> validate(const BlendFileOptions& options) {
+    if (auto valid = check_one_output(options.write, static_cast<bool>(options.level_names)); !valid) return valid;
     for (const LayerFile& layer : options.layers) {
         if (auto valid = validate(layer.layer()); !valid) return valid;
     }

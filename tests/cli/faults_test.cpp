@@ -44,6 +44,7 @@ const Case kCases[] = {
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr", "--roughness-out", "rough.dds"}, "a.exr"},
     {"Heights", "integrate-normals", {"a.dds", "-o", "out.png", "--curvature-out", "curvature.exr"}, "a.dds"},
     {"OtherReader", "bake-normals", {"a.tif", "-o", "out.dds"}, "a.tif", true},
+    {"Model", "pack-normals", {"a.gltf", "-o", "out.gltf", "--y", "down"}, "a.gltf"},
     {"OtherWriter", "unpack-normals", {"a.dds", "-o", "out.tif"}, "a.dds", true},
 };
 
@@ -78,6 +79,13 @@ protected:
     }
 
     void make_input(const std::string& from, const std::string& to) {
+        if (to.ends_with(".gltf")) {  // with its picture beside it
+            scratch_.write(std::filesystem::path(to).filename(),
+                           R"({"asset":{"version":"2.0","generator":")" + from +
+                               R"("},"images":[{"uri":"n.png"}],"textures":[{"source":0}],)"
+                               R"("materials":[{"normalTexture":{"index":0}}]})");
+            return scratch_.has("n.png") ? void() : make_input("a.png", scratch_.path("n.png"));
+        }
         const Ran ran = run(scratch_, "bake-normals",
                             {from, "-o", to, "--format", to.ends_with(".exr") ? "half" : "rgb8", "--no-sync"});
         if (ran.code != 0) throw std::runtime_error(ran.err);

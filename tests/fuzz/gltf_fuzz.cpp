@@ -16,6 +16,7 @@
 #include "fuzz/whole_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
+#include "mesh/gltf_writer.h"
 
 namespace {
 
@@ -49,6 +50,45 @@ void look_at_maps(std::span<const std::byte> bytes, const tex::LoadBeside& load)
     }
 }
 
+// With other pictures in its slots, the file has the same maps, and reads as what was written.
+void put_pictures(std::span<const std::byte> bytes, const tex::LoadBeside& load) {
+    const auto maps_in = [&](std::span<const std::byte> file, std::vector<tex::ModelImage>* images) {
+        std::vector<tex::ModelMap> none;
+        const auto chunks = tex::gltf_chunks(file);
+        if (!chunks) return none;
+        const auto document = tex::JsonDocument::parse(chunks->json);
+        if (!document) return none;
+        auto maps = tex::gltf_maps(document->root());
+        if (!maps) return none;
+        tex::GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
+        if (images != nullptr) *images = tex::gltf_images(document->root(), buffers, *maps);
+        return *maps;
+    };
+    const auto maps = maps_in(bytes, nullptr);
+    for (std::size_t k = 0; k < maps.size() && k < 3; ++k) {
+        tex::ModelPicture picture{{maps[k]}, tex::Container::png, std::vector<std::byte>(5 + 7 * k, std::byte{7})};
+        for (std::size_t other = k + 1; other < maps.size() && k % 2 == 0; ++other) {
+            const bool is_of_another_slot =
+                maps[other].material != maps[k].material || maps[other].slot != maps[k].slot;
+            if (maps[other].image == maps[k].image && is_of_another_slot) picture.maps.push_back(maps[other]);
+        }
+        const auto written = tex::write_gltf(bytes, load, {true, "out.gltf"}, {{picture}});
+        if (!written) continue;
+        std::vector<tex::ModelImage> images;
+        const auto again = maps_in(written->bytes, &images);
+        expect(again.size() == maps.size());
+        for (std::size_t m = 0; m < again.size(); ++m) {
+            expect(again[m].material == maps[m].material && again[m].slot == maps[m].slot);
+            if (m != k || again[m].image < 0) continue;
+            const tex::ModelImage& image = images[static_cast<std::size_t>(again[m].image)];
+            expect(image.error || !image.file.empty() || image.bytes == picture.bytes);
+        }
+        for (const tex::BesideModel& file : written->beside) {
+            expect(!file.path.starts_with('/') && ("/" + file.path + "/").find("/../") == std::string::npos);
+        }
+    }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -67,6 +107,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         expect_selected(*mesh);
     }
     look_at_maps(bytes, load);
+    put_pictures(bytes, load);
     if (const auto files = tex::gltf_buffer_files(bytes)) {
         // No name leads out of the folder of the file.
         for (const std::string& file : *files) {

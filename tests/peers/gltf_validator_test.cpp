@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -234,6 +235,18 @@ protected:
                error.reason.find("requires the extension ACME_nonsense") != std::string::npos;
     }
 
+    // What the validator says about each of the models, of any severity, in the order of its words.
+    std::vector<std::vector<std::string>> messages(const std::vector<std::string>& models) {
+        std::string list;
+        for (const std::string& model : models) list += model + "\n";
+        EXPECT_TRUE(shell("node '" + (kSource / "tests/peers/gltf_validator.mjs").string() + "' '" + modules() + "' '" +
+                          scratch_.write("list", list) + "' all >'" + scratch_.path("said") + "'"));
+        std::istringstream said(scratch_.read("said"));
+        std::vector<std::vector<std::string>> all;
+        for (std::string line; std::getline(said, line);) all.push_back(words(line));
+        return all;
+    }
+
     const tex::Scratch scratch_;
     int valid_ = 0, refused_ = 0;
 };
@@ -266,6 +279,74 @@ TEST_F(GltfValidator, AgreesOnOddModels) {
     EXPECT_GT(models.size(), 100u);
     compare(models);
     std::printf("%zu models: %d valid, %d refused by both\n", models.size(), valid_, refused_);
+}
+
+// The maps of a model as PNG, one picture for each image; none if one of them cannot be read.
+std::vector<tex::ModelPicture> pictures_of(const tex::Model& model, const std::vector<tex::ModelMap>& maps) {
+    std::vector<tex::ModelPicture> pictures;
+    for (const tex::ModelMap& map : maps) {
+        const auto same = std::find_if(pictures.begin(), pictures.end(), [&](const tex::ModelPicture& picture) {
+            return picture.maps.front().image == map.image;
+        });
+        if (same != pictures.end()) {
+            same->maps.push_back(map);
+            continue;
+        }
+        if (map.image < 0) return {};
+        const tex::ModelImage& image = model.images[static_cast<std::size_t>(map.image)];
+        if (image.error) return {};
+        tex::PackFileOptions options;
+        options.max_side = 64;
+        options.write.into = std::make_shared<std::vector<std::byte>>();
+        if (image.file.empty()) options.source.read.bytes = std::make_shared<const std::vector<std::byte>>(image.bytes);
+        if (!tex::pack_file(image.file, "picture", tex::Container::png, options)) return {};
+        pictures.push_back({{map}, tex::Container::png, *options.write.into});
+    }
+    return pictures;
+}
+
+// All maps of a model get pictures, or one material's, whose textures are split from others.
+TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithOtherPictures) {
+    std::vector<fs::path> models;
+    ASSERT_TRUE(shell("python3 '" + (kSource / "tests/peers/odd_models.py").string() + "' '" + scratch_.path() + "'"));
+    for (const fs::path& root : {fs::path(scratch_.path()), kData, kSource / "samples"}) {
+        if (!fs::exists(root)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root)) {
+            const auto extension = entry.path().extension();
+            if (extension == ".gltf" || extension == ".glb") models.push_back(entry.path());
+        }
+    }
+    std::sort(models.begin(), models.end());
+    std::vector<std::string> before, after;
+    for (const fs::path& file : models) {
+        const auto model = tex::read_model_maps(file.string());
+        if (!model || model->maps.empty()) continue;
+        for (const std::string material : {"", "0"}) {
+            const auto maps = tex::maps_of(*model, material);
+            if (!maps || maps->empty() || (!material.empty() && maps->size() == model->maps.size())) continue;
+            const auto pictures = pictures_of(*model, *maps);
+            if (pictures.empty()) continue;
+            const fs::path output = scratch_.path("out/" + std::to_string(after.size())) / file.filename();
+            fs::create_directories(output.parent_path());
+            const auto written = tex::write_model(file.string(), output.string(), {pictures});
+            ASSERT_TRUE(written) << written.error().message();
+            const auto again = tex::read_model_maps(output.string());
+            ASSERT_TRUE(again) << again.error().message();
+            EXPECT_EQ(again->maps.size(), model->maps.size());
+            before.push_back(file.string());
+            after.push_back(output.string());
+        }
+    }
+    EXPECT_GT(after.size(), 80u);
+    const auto was = messages(before), is = messages(after);
+    ASSERT_EQ(was.size(), before.size());
+    ASSERT_EQ(is.size(), after.size());
+    for (std::size_t k = 0; k < after.size(); ++k) {
+        std::vector<std::string> more;
+        std::set_difference(is[k].begin(), is[k].end(), was[k].begin(), was[k].end(), std::back_inserter(more));
+        EXPECT_TRUE(more.empty()) << more.front() << " in " << after[k] << ", made of " << before[k];
+    }
+    std::printf("%zu models were written\n", after.size());
 }
 
 TEST_F(GltfValidator, AgreesOnModelsWithOneChange) {

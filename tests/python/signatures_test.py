@@ -32,6 +32,7 @@ NOT_BOUND = {
     "least_response_of": "integrate() takes it by default",
     "map_name": "the field `name` of a map of read_model()",
     "maps_of": "a filter of a list",
+    "model_files": "run('pack-normals', ..., '--json') says what it wrote",
     "name_of": "words are the names",
     "needs_mesh": "preview() says that there is no mesh",
     "padded_stride": "memory of planes, which arrays keep",
@@ -47,6 +48,7 @@ NOT_BOUND = {
     "stretch_heights": "for numpy: (heights - low) / (high - low)",
     "to_string": "layouts are words",
     "validate": "check() validates its arguments",
+    "write_model": "run('pack-normals', 'scene.glb', '-o', 'fixed.glb') writes models",
 }
 
 

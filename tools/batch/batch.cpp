@@ -14,11 +14,13 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include "batch/model_plan.h"
 #include "batch/up_to_date.h"
 #include "cli/file_status.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "tasks/depfile.h"
+#include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 #include "tasks/outcome.h"
 #include "threads/fork_join.h"
@@ -123,6 +125,7 @@ private:
             if (!job.task.model->map) return without_maps(job);
             job.task.model->report(job.report);
         }
+        if (job.task.model_output && job.task.model_output->error) return *job.task.model_output->error;
         if (would_clobber(job.task)) return Error{ErrorCode::io, job.task.output, "exists, and --no-clobber is given"};
         return process_(job);
     }
@@ -314,6 +317,7 @@ Result<std::vector<Task>> Converter::plan() const {
     if (own.models) {
         MeshReadOptions how;
         how.reader = running.read;
+        if (own.writes_models && writes_models(files)) return plan_models(*inputs, files, output, own, command, how);
         *inputs = with_maps_of_models(std::move(*inputs), *own.models, how);
     }
     return plan_outputs(std::move(*inputs), files, output, own);

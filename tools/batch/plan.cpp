@@ -66,14 +66,15 @@ std::string output_of(const std::string& pattern, const Input& input) {
 }
 
 // The number of inputs is too large for -o.
-[[noreturn]] void refuse_many(const std::vector<Input>& inputs) {
+[[noreturn]] void refuse_many(const std::vector<Input>& inputs, const OutputRules& rules) {
     const bool all_one = std::all_of(inputs.begin(), inputs.end(), [&](const Input& input) {
         return input.model && input.name == inputs.front().name;
     });
     if (!all_one)
         throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
-    throw UsageError(fmt::format("-o takes one map, and {} has {}; --material chooses one, --out-dir takes all",
-                                 printable(inputs.front().name), inputs.size()));
+    throw UsageError(fmt::format("-o takes one map, and {} has {}; --material chooses one, --out-dir takes all{}",
+                                 printable(inputs.front().name), inputs.size(),
+                                 rules.writes_models ? ", and a name such as x.glb the model itself" : ""));
 }
 
 void set_model(Task& task, const Input& input) {
@@ -154,7 +155,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
         check_tiles(inputs, files);
     }
     const bool names_each = has_tile(files.output) || (files.tiles && has_grid(files.output));
-    if (!files.output.empty() && inputs.size() > 1 && !names_each) refuse_many(inputs);
+    if (!files.output.empty() && inputs.size() > 1 && !names_each) refuse_many(inputs, rules);
     if (!files.output.empty() && inputs.empty())
         throw UsageError(fmt::format("no input for -o: {} names none", printable(files.files_from)));
     std::vector<Task> tasks;

@@ -2,11 +2,17 @@
 
 #include "batch/repack.h"
 
+#include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "tasks/model_output.h"
 #include "tasks/written_levels.h"
 
 namespace tex::cli {
@@ -61,6 +67,7 @@ PackFileOptions PackCommand::all_options(Job& job) const {
 }
 
 Result<void> PackCommand::process(Job& job) {
+    if (job.task.model_output) return process_model(job);
     PackFileOptions with = all_options(job);
     if (job.task.model) {
         if (auto opened = job.task.model->open(with.source.read); !opened) return opened;
@@ -74,6 +81,66 @@ Result<void> PackCommand::process(Job& job) {
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
     note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding});
     report(job, *packed);
+    return {};
+}
+
+// Packs the image of some maps of a model into memory.
+Result<void> PackCommand::pack_image(Job& job, const std::vector<std::shared_ptr<const ModelInput>>& maps,
+                                     const Execution& execution, ModelPicture& picture) {
+    const ModelInput& first = *maps.front();
+    PackFileOptions with = all_options(job);
+    const auto bytes = std::make_shared<std::vector<std::byte>>();
+    with.write.into = bytes;
+    if (auto opened = first.open(with.source.read); !opened) return opened;
+    const auto packed = pack_file(first.path, first.name(), job.task.container, with, execution);
+    if (!packed) return packed.error();
+    normals.note(job, first.path, packed->source);
+    note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding}, first.path);
+    picture.bytes = std::move(*bytes);
+    for (const auto& map : maps) {
+        Json line;
+        map->report(line);
+        line["extent"] = {packed->extent.width, packed->extent.height};
+        line["format"] = name_of(kEncodingNames, packed->pack.encoding);
+        line["y"] = nullptr;
+        if (packed->pack.y_known) line["y"] = name_of(kYAxisNames, packed->pack.y_axis);
+        line["bytes"] = packed->bytes;
+        job.report["maps"].push_back(std::move(line));
+    }
+    return {};
+}
+
+Result<void> PackCommand::process_model(Job& job) {
+    const ModelOutput& model = *job.task.model_output;
+    ModelChanges changes = model.changes(job.task.container);
+    std::vector<ModelPicture>& pictures = changes.pictures;
+    for (std::size_t k = 0; k < pictures.size(); ++k) {
+        const double done = 0.95 * static_cast<double>(k + 1) / static_cast<double>(pictures.size());
+        if (auto packed = pack_image(job, model.images[k], job.until(done), pictures[k]); !packed) return packed;
+    }
+    if (job.task.container == Container::jpeg)
+        repeated_.add(job, job.task.input, "JPEG is lossy, so that normals change; PNG keeps every code");
+    if (output.of(job.task.engine).y == YAxis::down)
+        repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    MeshReadOptions how;
+    how.reader = job.read_options;
+    const auto written = write_model(job.task.input, job.task.output, changes, how, job.write_options);
+    if (!written) return written.error();
+    job.wrote(job.task.output);
+    for (const ModelFile& file : written->files) {
+        if (file.path == job.task.output) continue;
+        job.wrote(file.path);
+        job.report["files"].push_back(file.path);
+    }
+    const auto warn_of = [&](const std::vector<std::string>& names, const char* what) {
+        if (names.empty()) return;
+        const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
+        job.warn(fmt::format("it names {}{}, which {}", printable(names.front()), more, what));
+    };
+    warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
+    warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
+    std::ignore = job.reached(1.0);
     return {};
 }
 

@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <tex/mesh.h>
 #include <tex/pipeline.h>
 
 #include "batch/batch.h"
@@ -53,6 +56,9 @@ protected:
 
 private:
     [[nodiscard]] PackFileOptions all_options(Job& job) const;
+    [[nodiscard]] Result<void> process_model(Job& job);
+    [[nodiscard]] Result<void> pack_image(Job& job, const std::vector<std::shared_ptr<const ModelInput>>& maps,
+                                          const Execution& execution, ModelPicture& picture);
 };
 
 }  // namespace tex::cli

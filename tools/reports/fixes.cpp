@@ -13,6 +13,7 @@
 
 #include "cli/text.h"
 #include "options/output.h"
+#include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -257,6 +258,35 @@ std::string mirror_advice(std::string_view id, const Target& target, const Check
            "; check-normals --height FILE decides between the two, and so does a look at the occlusion map or the mesh";
 }
 
+// The command that writes the model again, with this map corrected.
+Fix model_fix(const Finding& finding, const CheckReport& report, const Requirements& require) {
+    const std::string_view id = finding.rule->id;
+    const std::string type = lower_case(report.file.substr(std::min(report.file.rfind('.'), report.file.size())));
+    const auto target = target_of(id, report, require);
+    const bool is_written = !report.material.empty() && (type == ".glb" || type == ".gltf") && target &&
+                            command_of(*finding.rule, report).program == "pack-normals" &&
+                            !is_red_mirrored(id, report) && id != "N108";
+    if (!is_written) return {"Correct the image in the program that made it, and put it into the model again."};
+    FixCommand command;
+    for (const Finding* each : fixed_together(finding, report, require)) {
+        const FixCommand step = command_of(*each->rule, report);
+        if (step.program != "pack-normals") continue;
+        command.program.empty() ? void(command = step) : join_commands(command, step);
+    }
+    std::string options;
+    for (const std::string& option : command.options) options += " " + option;
+    if (is_for_models(target->encoding) && target->encoding != Encoding::rgb8) options += " --format SAME";
+    Fix fix{fmt::format("{} {} --material {}{} -o FIXED{}", command.program, shell_file(report.file),
+                        shell_word(report.material), filled_in(options, *target, report, require), type),
+            true};
+    if (is_about_mirrors(id) && !(report.pair && report.pair->decides())) {
+        fix.advice =
+            "If dents become bumps, red is mirrored instead, as in a picture that was flipped: correct the "
+            "image in the program that made it";
+    }
+    return fix;
+}
+
 }  // namespace
 
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
@@ -273,7 +303,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
             "The texels do not show which way green points. Find that out first: if it is as required, only the "
             "statement is wrong."};
     }
-    if (!report.map.empty()) return {"Correct the image in the program that made it, and put it into the model again."};
+    if (!report.map.empty()) return model_fix(finding, report, require);
     const std::vector<const Finding*> together = fixed_together(finding, report, require);
     FixCommand command;
     std::optional<Target> target;

@@ -17,6 +17,7 @@
 namespace tex::cli {
 
 struct Engine;
+struct ModelOutput;
 
 // Where the files of options that write go, such as that of --height-out, if not the command line decides about names.
 struct FurtherPlaces {
@@ -45,6 +46,9 @@ struct Task {
     std::vector<std::string> around = {};
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model, and not the file itself
     std::vector<std::shared_ptr<const ModelInput>> joined_models = {};  // the same for each of `joined`
+    // Input and output are models (model_output.h); `container` is that of the pictures that change, and more_outputs
+    // are files beside the output.
+    std::shared_ptr<const ModelOutput> model_output = {};
 
     // The input after which patterns name files.
     [[nodiscard]] const std::string& named() const { return origin.empty() ? input : origin; }

@@ -265,7 +265,9 @@ inline constexpr Named<PictureKind> kPictureKindNames[] = {
 
 struct CheckReport {
     std::string file;
-    std::string map = {};           // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
+    std::string map = {};  // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
+    // Of such a map: its material as MeshSelection names it; empty if that has another normal map, too.
+    std::string material = {};
     std::vector<Finding> findings;  // by rule id, then level
     int explained = 0;              // findings left out because another one explains them
     std::optional<Error> error;     // the file could not be read (see check_file()) or checked

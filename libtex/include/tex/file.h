@@ -179,6 +179,9 @@ struct WriteOptions {
     std::function<Result<void>(const std::string& path, const std::string& complete)> before_replacing = {};
     // Called when a file has taken its place.
     std::function<void(const std::string& path)> replaced = {};
+    // If set, the bytes of the file go here, and nothing is written: the path is the name of the file in messages. The
+    // output must be one file; neither function above is called.
+    std::shared_ptr<std::vector<std::byte>> into = {};
 };
 
 // Whether every option is in its range. Errors: bad_option, which names the option.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pipeline.h: from file to file, a few rows at a time.
+// pipeline.h: from file to file, a few rows at a time; from model to model.
 
 #pragma once
 
@@ -16,6 +16,7 @@
 #include <tex/blend.h>
 #include <tex/file.h>
 #include <tex/height.h>
+#include <tex/mesh.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
 #include <tex/types.h>
@@ -366,5 +367,70 @@ struct StepsReport {
 [[nodiscard]] TEX_API Result<StepsReport> apply_steps(const std::string& input, const std::vector<Step>& steps,
                                                       const std::string& output, Container container,
                                                       const Execution& execution = {});
+
+// -- model output --------------------------------------------------------------------------------------------------
+//
+// Writes a glTF model with other pictures in the slots of its normal maps.
+//
+// All else keeps its bytes: the text of the JSON with the order of its keys, its numbers and extensions that libtex
+// does not know; buffers, which stay compressed; other images and chunks. A picture stays where the old one was: in a
+// buffer, in a data URI or in a file. Bytes that follow it in a buffer move by a multiple of 8.
+//
+// An image, a texture or bytes of a buffer that something else uses, too (a colour of the material, a material whose
+// map stays), are left as they are, and the maps get one of their own. A texture names the new picture as its source,
+// whatever extension named the old one (KHR_texture_basisu, MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif). An
+// extension that no texture uses any more leaves the lists of the extensions.
+//
+// Files beside the model. If the output is in another folder than the input, all files that the model names are copied
+// to the same places beside the output. A file that changes (a picture, a buffer with one) is written there, a picture
+// with the extension of its type. In the folder of the input, and where the name belongs to another file of the model,
+// its name begins with the stem of the output: "fixed_stone_n.png".
+
+// A picture that some maps of a model get. All of them have the same image, or images of the same file or bytes.
+struct ModelPicture {
+    std::vector<ModelMap> maps;
+    Container container = Container::png;  // png or jpeg
+    std::vector<std::byte> bytes = {};     // of the file
+};
+
+// What changes in a model.
+struct ModelChanges {
+    std::vector<ModelPicture> pictures;
+};
+
+// A file of the model that is written.
+struct ModelFile {
+    std::string path;
+    std::string from = {};    // the file beside the input that is copied or replaced; empty: none
+    bool is_changed = false;  // otherwise it is a copy
+};
+
+struct ModelFiles {
+    std::vector<ModelFile> files;           // in the order in which they take their places; the model is the last one
+    std::vector<std::string> missing = {};  // files that the model names and that do not exist: they are not copied
+    std::vector<std::string> outside = {};  // URIs of what is not in its folder: they stay as they are
+};
+
+// The files that write_model() would write. The bytes of the pictures do not matter.
+//
+// Errors: those of read_model_maps(); io (a file beside the model is no regular file); unsupported (the output is not
+// called .glb and the input is GLB, or not .gltf and the input is text; a file beside the model that would be written
+// has an extension that models do not use); bad_option (a map is not one of the model, or has no image; two pictures
+// are for one map; another container).
+[[nodiscard]] TEX_API Result<ModelFiles> model_files(const std::string& input, const std::string& output,
+                                                     const ModelChanges& changes, const MeshReadOptions& options = {});
+
+// Writes the model `input` to `output`, with the files beside it. Missing folders below that of the output are created.
+//
+// All files are written to the disk first. Then they take their places, one after the other, as write_file() describes,
+// and the model comes last: an interrupted run leaves the old model, and some of the files beside it may be new. Names
+// beside the model come from the model, so that links there are replaced and not followed; with options.no_clobber, a
+// file that already holds the same bytes stays.
+//
+// Errors: those of model_files() and write_file(); bad_data (a buffer with a picture is damaged); unsupported (a GLB
+// file would have 4 GiB or more).
+[[nodiscard]] TEX_API Result<ModelFiles> write_model(const std::string& input, const std::string& output,
+                                                     const ModelChanges& changes, const MeshReadOptions& options = {},
+                                                     const WriteOptions& writing = {});
 
 }  // namespace tex::inline v1

@@ -48,7 +48,7 @@
 //     bake.h      bake()                                mip.h       build_mip_chain(), build_roughness_chain()
 //     blend.h     scale(), blend()                      pack.h      pack(), unpack(), pack_roughness()
 //     surface.h   integrate(), curvature()              mesh.h      meshes, models, tangents, convert, transfer()
-//     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), blend_file(), steps
+//     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), steps, write_model()
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
 //     tex_c.h     the same for C, Rust and C#
 //

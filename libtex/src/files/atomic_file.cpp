@@ -2,7 +2,9 @@
 
 #include "files/atomic_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -17,7 +19,8 @@
 namespace tex::inline v1 {
 
 AtomicFileOptions AtomicFileOptions::of(const WriteOptions& options) {
-    return {options.sync, options.no_clobber, options.follow_links, options.before_replacing, options.replaced};
+    return {options.sync,     options.no_clobber, options.follow_links, options.before_replacing,
+            options.replaced, options.into};
 }
 
 struct AtomicFile::State {
@@ -25,6 +28,7 @@ struct AtomicFile::State {
     AtomicFileOptions options;
     std::optional<PendingFile> pending = {};
     std::optional<ThroughFile> through = {};  // if set, there is no pending file
+    std::mutex mutex = {};                    // guards the bytes of options.into, which there are instead of both
 };
 
 AtomicFile::AtomicFile(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -34,7 +38,11 @@ AtomicFile::~AtomicFile() = default;
 Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOptions& options) {
     return no_throw([&]() -> Result<AtomicFile> {
         if (path.find('\0') != std::string::npos) return Error{ErrorCode::io, path, "the name holds a zero byte"};
-        auto state = std::make_unique<State>(State{path, options});
+        std::unique_ptr<State> state(new State{path, options});
+        if (options.into) {
+            options.into->clear();
+            return AtomicFile(std::move(state));
+        }
         if (options.follow_links || named_descriptor(path)) {
             Result<std::optional<ThroughFile>> through = ThroughFile::open(path);
             if (!through) return through.error();
@@ -51,6 +59,13 @@ Result<AtomicFile> AtomicFile::open(const std::string& path, const AtomicFileOpt
 
 Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) {
     return no_throw([&]() -> Result<void> {
+        if (state_->options.into) {
+            const std::lock_guard lock(state_->mutex);
+            std::vector<std::byte>& into = *state_->options.into;
+            into.resize(std::max(into.size(), static_cast<std::size_t>(offset) + bytes.size()));
+            std::copy(bytes.begin(), bytes.end(), into.begin() + static_cast<std::ptrdiff_t>(offset));
+            return {};
+        }
         if (state_->through) {
             state_->through->hold(offset, bytes);
             return {};
@@ -67,6 +82,7 @@ Result<void> AtomicFile::write_at(std::uint64_t offset, std::span<const std::byt
 
 Result<void> AtomicFile::commit() {
     return no_throw([&]() -> Result<void> {
+        if (state_->options.into) return {};
         if (state_->through) return state_->through->write_held();
         const AtomicFileOptions& options = state_->options;
         PendingFile& pending = *state_->pending;

@@ -19,6 +19,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <tex/types.h>
 
@@ -33,6 +34,7 @@ struct AtomicFileOptions {
     bool follow_links = true;
     std::function<Result<void>(const std::string& path, const std::string& complete)> before_replacing = {};
     std::function<void(const std::string& path)> replaced = {};
+    std::shared_ptr<std::vector<std::byte>> into = {};
 
     [[nodiscard]] static AtomicFileOptions of(const WriteOptions& options);
 };

@@ -12,19 +12,18 @@
 #include "mesh/gltf_materials.h"
 
 namespace tex::inline v1 {
-namespace {
 
-// The image that a texture shows, or -1: the first source that is there.
-int image_of(JsonValue root, std::int64_t texture) {
-    const JsonValue description = root["textures"][static_cast<std::size_t>(texture)],
-                    extensions = description["extensions"];
-    for (const JsonValue& source :
-         {extensions["KHR_texture_basisu"]["source"], extensions["MSFT_texture_dds"]["source"],
-          extensions["EXT_texture_webp"]["source"], extensions["EXT_texture_avif"]["source"], description["source"]}) {
+int image_of_texture(JsonValue root, std::int64_t texture) {
+    const JsonValue description = root["textures"][static_cast<std::size_t>(texture)];
+    const auto image_at = [&](JsonValue source) {
         const std::optional<std::int64_t> image = source.count();
-        if (image && static_cast<std::size_t>(*image) < root["images"].size()) return static_cast<int>(*image);
+        return image && static_cast<std::size_t>(*image) < root["images"].size() ? static_cast<int>(*image) : -1;
+    };
+    for (const char* const extension : kTextureExtensions) {
+        const int image = image_at(description["extensions"][extension]["source"]);
+        if (image >= 0) return image;
     }
-    return -1;
+    return image_at(description["source"]);
 }
 
 std::optional<NormalSlot> normal_slot(const GltfSlot& slot) {
@@ -32,6 +31,8 @@ std::optional<NormalSlot> normal_slot(const GltfSlot& slot) {
     if (slot.name == "clearcoatNormalTexture") return NormalSlot::clearcoat_normal;
     return std::nullopt;
 }
+
+namespace {
 
 // Where the bytes of an image are. Those in the file are read if `reads` is set.
 Result<void> locate(JsonValue description, GltfBuffers& buffers, bool reads, ModelImage& image) {
@@ -99,7 +100,7 @@ Result<std::vector<ModelMap>> gltf_maps(JsonValue root) {
             ModelMap map;
             map.material = static_cast<int>(m);
             map.slot = *kind;
-            map.image = image_of(root, slot.texture);
+            map.image = image_of_texture(root, slot.texture);
             map.uv_set = slot.uv_set;
             map.uv_transform = slot.transform;
             map.scale = slot.scale;
@@ -128,7 +129,7 @@ std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const 
         const auto slots = slots_of(materials[m]);
         if (!slots) continue;
         for (const GltfSlot& slot : *slots) {
-            const int image = image_of(root, slot.texture);
+            const int image = image_of_texture(root, slot.texture);
             if (image < 0) continue;
             ModelImage& first = images[same[static_cast<std::size_t>(image)]];
             first.uses.push_back({static_cast<int>(m), slot.name, slot.is_color});

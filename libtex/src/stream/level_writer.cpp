@@ -31,7 +31,8 @@ public:
     PictureWriter(std::string path, std::unique_ptr<OutputFile> file, LevelPacking packing, int first)
         : path_(std::move(path)), file_(std::move(file)), packing_(std::move(packing)), first_(first) {}
 
-    Result<void> begin(const FileType& type, const TextureHead& head) {
+    // `waits_beside`: a scratch file may be made beside the output.
+    Result<void> begin(const FileType& type, const TextureHead& head, bool waits_beside) {
         Result<std::unique_ptr<RowTarget>> target =
             type.open_target(head, [this](std::uint64_t offset, std::span<const std::byte> bytes) {
                 size_ = std::max(size_, static_cast<std::size_t>(offset) + bytes.size());
@@ -39,7 +40,7 @@ public:
             });
         if (!target) return target.error().of(path_);
         target_ = std::move(*target);
-        target_->wait_beside(path_);
+        if (waits_beside) target_->wait_beside(path_);
         return {};
     }
     // If the target has work, several threads pack strips and do that work.
@@ -215,7 +216,7 @@ Result<std::unique_ptr<LevelWriter>> LevelWriter::open(const std::string& path, 
     if (!file) return file.error();
     if (type.open_target != nullptr) {
         auto picture = std::make_unique<PictureWriter>(path, std::move(*file), packing, first);
-        if (const Result<void> begun = picture->begin(type, head); !begun) return begun.error();
+        if (const Result<void> begun = picture->begin(type, head, !options.into); !begun) return begun.error();
         return std::unique_ptr<LevelWriter>(std::move(picture));
     }
     if (type.layout == nullptr) {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// gltf_writer.h: a glTF file with other pictures in some of its slots.
+
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tex/pipeline.h>
+#include <tex/types.h>
+
+#include "mesh/gltf_buffers.h"
+#include "mesh/gltf_names.h"
+
+namespace tex::inline v1 {
+
+// A file beside the model that is written, by relative paths.
+struct BesideModel {
+    std::string path;         // from the output
+    std::string from;         // from the input: what it is a copy of, or whose place it takes
+    bool is_changed = false;  // otherwise it is a copy
+    std::vector<std::byte> bytes = {};
+};
+
+struct WrittenGltf {
+    std::vector<std::byte> bytes;
+    std::vector<BesideModel> beside;
+    std::vector<std::string> outside;  // GltfNames::outside()
+};
+
+// The file with these changes, as model output in pipeline.h describes. If the output is in the folder of the input,
+// copies are left out. Errors: those of read_model_maps(), `load`; bad_option, unsupported as write_model().
+Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
+                               const ModelChanges& changes);
+
+}  // namespace tex::inline v1

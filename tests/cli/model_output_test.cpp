@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// pack-normals with glTF models as its outputs.
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using JsonValue = nlohmann::json;
+
+const fs::path kMeshes = TEX_SOURCE_DIR "/../shared/data/mesh";
+const fs::path kWild = TEX_SOURCE_DIR "/../shared/data/wild";
+
+}  // namespace
+
+class ModelOutputs : public testing::Test {
+protected:
+    // Two maps: one with green up, and one with green down.
+    ModelOutputs() {
+        does("cp " TEX_SOURCE_DIR "/samples/broken/N80*.glb .; cp " TEX_SOURCE_DIR
+             "/samples/bricks.png .; "
+             "bake-normals bricks.png -o up.png --bumpiness 12; pack-normals up.png -o down.png --y down; mkdir maps; "
+             "convert up.png -strip maps/up.png; convert down.png -strip maps/down.png");
+        write_model_of("m.gltf", {"maps/up.png", "maps/down.png"});
+    }
+    Ran go(const std::string& script) { return shell(scratch_, "set -e; " + script); }
+    Ran does(const std::string& script) {
+        Ran ran = go(script);
+        EXPECT_EQ(ran.code, 0) << script << ": " << ran.err;
+        return ran;
+    }
+    void refuses(const std::string& script, int code, const std::string& said) {
+        const std::vector<std::string> before = scratch_.list();
+        const Ran ran = go(script);
+        EXPECT_EQ(ran.code, code) << script << ": " << ran.err;
+        EXPECT_NE(ran.err.find(said), std::string::npos) << script << ": " << ran.err;
+        EXPECT_EQ(scratch_.list(), before) << script;
+    }
+    // A model without geometry, with a material "m0", "m1" ... for each picture.
+    void write_model_of(const std::string& name, const std::vector<std::string>& pictures) {
+        JsonValue model = {{"asset", {{"version", "2.0"}}}};
+        for (const std::string& picture : pictures) {
+            const std::size_t k = model["images"].size();
+            model["images"].push_back({{"uri", picture}});
+            model["textures"].push_back({{"source", k}});
+            model["materials"].push_back({{"name", "m" + std::to_string(k)}, {"normalTexture", {{"index", k}}}});
+        }
+        scratch_.write(name, model.dump(2));
+    }
+    void same(const std::string& a, const std::string& b) {
+        EXPECT_FALSE(scratch_.read(a).empty()) << a;
+        EXPECT_TRUE(scratch_.read(a) == scratch_.read(b)) << a << " and " << b << " differ";
+    }
+    // Writes the bytes of an image inside a model to a file.
+    void extract(const std::string& model, const std::string& file, std::size_t image = 0) {
+        const auto read = read_model(scratch_.path(model));
+        ASSERT_TRUE(read) << read.error().message();
+        const auto& bytes = read->images.at(image).bytes;
+        std::ofstream out(scratch_.path(file), std::ios::binary);
+        out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    }
+    Scratch scratch_;
+};
+
+TEST_F(ModelOutputs, PicturesAreWhatTheCommandMakesOfTheirFiles) {
+    extract("N804-scale-not-positive.glb", "inside.png");
+    for (const std::string options : {"--y-in down --y up", "--normalize", "--max-size 32", "--format rgb16",
+                                      "--format rgba8 --y-in up --y down"}) {
+        does("pack-normals N804*.glb -o model.glb " + options);
+        does("pack-normals inside.png -o file.png " + options);
+        extract("model.glb", "model.png");
+        same("model.png", "file.png");
+    }
+    does("pack-normals N804*.glb -o model.glb --container jpeg --quality 80 2>said");
+    EXPECT_NE(scratch_.read("said").find("JPEG is lossy"), std::string::npos);
+    does("pack-normals inside.png -o file.jpg --quality 80");
+    extract("model.glb", "model.jpg");
+    same("model.jpg", "file.jpg");
+}
+
+TEST_F(ModelOutputs, DirectionsThatAreMeasuredAreThoseOfEachMap) {
+    does("pack-normals m.gltf -o fixed.gltf --y-in measured --y up");
+    does("compare-normals up.png maps/fixed_up.png --max 0.001; compare-normals up.png maps/fixed_down.png --max 1");
+    const std::string text = scratch_.read("fixed.gltf");
+    EXPECT_NE(text.find("maps/fixed_down.png"), std::string::npos) << text;
+    does("check-normals fixed.gltf --fail-on warning --disable N403");
+}
+
+TEST_F(ModelOutputs, OneMaterialAloneChanges) {
+    does("pack-normals m.gltf -o fixed.gltf --material m1 --y-in down --y up");
+    EXPECT_FALSE(scratch_.has("maps/fixed_up.png"));
+    does("compare-normals up.png maps/fixed_down.png --max 1");
+    const auto model = JsonValue::parse(scratch_.read("fixed.gltf"));
+    EXPECT_EQ(model["images"][0]["uri"], "maps/up.png");
+    EXPECT_EQ(model["images"][1]["uri"], "maps/fixed_down.png");
+}
+
+TEST_F(ModelOutputs, ManyModelsGoIntoAFolderWithTheirFiles) {
+    write_model_of("n.gltf", {"maps/up.png"});
+    does("pack-normals m.gltf n.gltf --out-dir out --name '{stem}.gltf' --y down --json > lines");
+    for (const char* name : {"out/m.gltf", "out/n.gltf", "out/maps/up.png", "out/maps/down.png"})
+        EXPECT_TRUE(scratch_.has(name)) << name;
+    same("out/m.gltf", "m.gltf");
+    const auto line = JsonValue::parse(lines_of(scratch_.read("lines")).at(0));
+    EXPECT_EQ(line["output"], "out/m.gltf");
+    ASSERT_EQ(line["maps"].size(), 2u);
+    EXPECT_EQ(line["maps"][1]["material"], "m1");
+    EXPECT_EQ(line["maps"][1]["format"], "rgb8");
+    // One picture of both must not be two.
+    refuses("pack-normals m.gltf n.gltf --out-dir other --name '{stem}.gltf' --material m1", 2, "have the same output");
+    does("mkdir glb; pack-normals N802*.glb N804*.glb --out-dir glb --name '{stem}.glb' --y down");
+    EXPECT_TRUE(scratch_.has("glb/N802-used-as-color.glb"));
+}
+
+TEST_F(ModelOutputs, OutputsThatReachInputsAreRefused) {
+    refuses("pack-normals m.gltf -o m.gltf --y down", 2, "the output m.gltf is the input m.gltf");
+    does("ln m.gltf hard.gltf; ln -s m.gltf soft.gltf; mkdir out; ln -s ../maps out/maps");
+    refuses("pack-normals m.gltf -o hard.gltf --y down", 2, "is the input");
+    refuses("pack-normals m.gltf -o soft.gltf --y down", 2, "is the input");
+    refuses("pack-normals m.gltf -o out/m.gltf --y down", 2, "the output out/maps/down.png is the input");
+    does("ln maps/up.png maps/fixed_up.png");
+    refuses("pack-normals m.gltf -o fixed.gltf --y down", 2, "the output maps/fixed_up.png is the input");
+    refuses("pack-normals m.gltf -o a.gltf --y down --depfile maps/a_up.png", 2, "--depfile");
+}
+
+TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
+    refuses("pack-normals N804*.glb -o x.gltf", 4, "is GLB, and so the output must be called .glb: x.gltf");
+    refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");
+    refuses("pack-normals up.png -o x.glb", 2, "up.png: is not a glTF model, and only a model can become a model");
+    refuses("pack-normals N802*.glb N804*.glb -o x.glb", 2, "-o takes one input, 2 are given");
+    refuses("pack-normals N804*.glb -o x.glb --format bc5", 2,
+            "models hold normals as rgb8, rgba8, rgb16, rgba16, not");
+    refuses("pack-normals N804*.glb -o x.glb --container dds", 2, "the pictures of a model are PNG or JPEG, not dds");
+    refuses("pack-normals N804*.glb -o x.glb --container jpeg --format rgb16", 2, "jpeg files cannot hold rgb16");
+    refuses("pack-normals N804*.glb -o x.glb --mips all", 2, "--mips: models hold no levels: engines build them");
+    refuses("pack-normals N804*.glb -o x.glb --alpha 0.5", 2, "--alpha is for one map, and not for models");
+    refuses("pack-normals N804*.glb -o x.glb --quality 80", 2, "--quality needs a JPEG file");
+    refuses("pack-normals N804*.glb -o x.glb --material glass", 4, "has no material \"glass\"");
+    refuses("pack-normals N804*.glb -o none/x.glb", 3, "none");
+    scratch_.write("bad.glb", std::string("glTF\2\0\0\0", 8));
+    scratch_.write("empty.gltf", std::string(R"({"asset":{"version":"2.0"}})"));
+    refuses("pack-normals bad.glb -o x.glb", 4, "bad.glb: truncated");
+    refuses("pack-normals empty.gltf -o x.gltf", 4, "empty.gltf: no material uses a normal map");
+    write_model_of("gone.gltf", {"gone.png"});
+    refuses("pack-normals gone.gltf -o x.gltf", 3, "gone.png");
+    scratch_.write("words.png", std::string("These are words."));
+    write_model_of("words.gltf", {"words.png"});
+    refuses("pack-normals words.gltf -o x.gltf", 4, "words.png");
+    const Ran some = go("pack-normals m.gltf empty.gltf --out-dir some --name '{stem}.gltf'");
+    EXPECT_EQ(some.code, 4);
+    EXPECT_TRUE(scratch_.has("some/m.gltf"));
+    EXPECT_FALSE(scratch_.has("some/empty.gltf"));
+    const Ran flat = go("pack-normals m.gltf -o down.gltf --y down");
+    EXPECT_NE(flat.err.find("viewers of glTF expect up"), std::string::npos) << flat.err;
+}
+
+TEST_F(ModelOutputs, FilesBesideAreKnownToDepfilesAndUpdates) {
+    does("pack-normals m.gltf --out-dir out --name '{stem}.gltf' --depfile d --y down");
+    EXPECT_EQ(scratch_.read("d"),
+              "out/m.gltf out/maps/up.png out/maps/down.png: \\\n  m.gltf \\\n  maps/down.png \\\n  maps/up.png\n");
+    const auto status = [&] {
+        return JsonValue::parse(
+            go("pack-normals m.gltf --out-dir out --name '{stem}.gltf' --update --json --y down").out)["status"];
+    };
+    EXPECT_EQ(status(), "current");
+    does("sleep 0.02; touch maps/up.png");
+    EXPECT_EQ(status(), "made");
+    does("rm out/maps/up.png");
+    EXPECT_EQ(status(), "made");
+    EXPECT_TRUE(scratch_.has("out/maps/up.png"));
+    refuses("pack-normals m.gltf -o out/m.gltf --no-clobber --y down", 3, "exists, and --no-clobber is given");
+}
+
+TEST_F(ModelOutputs, FilesThatAreMissingAreSaid) {
+    auto model = JsonValue::parse(scratch_.read("m.gltf"));
+    model["images"].push_back({{"uri", "color.png"}});
+    scratch_.write("m.gltf", model.dump());
+    const Ran ran = does("mkdir out; pack-normals m.gltf -o out/m.gltf --y down");
+    EXPECT_NE(ran.err.find("it names color.png, which cannot be found, and so there is no copy"), std::string::npos)
+        << ran.err;
+    EXPECT_EQ(does("pack-normals m.gltf -o fixed.gltf --y up").err, "");
+}
+
+// What check-normals prints about a model mends it.
+TEST_F(ModelOutputs, FixesOfCheckNormalsMendModels) {
+    write_model_of("d.gltf", {"maps/down.png", "maps/up.png"});
+    does("convert maps/up.png -channel RGB -evaluate multiply 0.8 +channel -evaluate add 10% maps/short.png");
+    write_model_of("s.gltf", {"maps/up.png", "maps/short.png"});
+    extract("N801-two-channel-in-model.glb", "maps/two.dds");
+    for (const std::string model : {"d.gltf", "s.gltf", "N801-two-channel-in-model.glb"}) {
+        const auto before = JsonValue::parse(go("check-normals --json " + model).out);
+        int fixes = 0;
+        for (const auto& finding : before["findings"]) {
+            std::string fix = finding.value("fix", "");
+            const std::size_t at = fix.rfind("FIXED.");
+            if (at == std::string::npos) continue;
+            ++fixes;
+            does(fix);
+            const std::string name = fix.substr(at);
+            const auto after = JsonValue::parse(go("check-normals --json " + name).out);
+            for (const auto& left : after["findings"]) {
+                EXPECT_FALSE(left["id"] == finding["id"] && left["map"].get<std::string>().substr(0, 2) ==
+                                                                finding["map"].get<std::string>().substr(0, 2))
+                    << fix << ": " << left;
+            }
+        }
+        EXPECT_GT(fixes, 0) << before;
+    }
+    const Ran said = go("check-normals d.gltf");
+    EXPECT_NE(said.out.find("fix: pack-normals d.gltf --material m0 --keep-length --y-in down --y up -o FIXED.gltf\n"),
+              std::string::npos)
+        << said.out;
+}
+
+TEST_F(ModelOutputs, RealModelsKeepTheirGeometry) {
+    if (!fs::exists(kMeshes)) GTEST_SKIP() << "no ../shared/data";
+    const std::vector<fs::path> models = {kMeshes / "FlightHelmet/FlightHelmet.gltf",
+                                          kMeshes / "Suzanne/02_suzanne.gltf", kMeshes / "NormalTangentTest.glb",
+                                          kMeshes / "AssetGenerator_plane/Mesh_PrimitiveAttribute_06.gltf"};
+    for (const fs::path& model : models) {
+        const std::string folder = model.stem();
+        does("mkdir " + folder);
+        const std::string output = folder + "/" + model.filename().string();
+        does("pack-normals " + model.string() + " -o " + output + " --max-size 128 --quiet");
+        const auto before = read_model(model), after = read_model(scratch_.path(output));
+        ASSERT_TRUE(before && after) << output;
+        ASSERT_EQ(after->maps.size(), before->maps.size());
+        ASSERT_EQ(after->mesh.parts.size(), before->mesh.parts.size());
+        for (std::size_t k = 0; k < before->mesh.parts.size(); ++k)
+            EXPECT_EQ(after->mesh.parts[k].indices, before->mesh.parts[k].indices);
+        for (const ModelMap& map : after->maps) {
+            const auto texture = read_map(*after, map);
+            ASSERT_TRUE(texture) << texture.error().message();
+            EXPECT_LE(texture->extent().width, 128);
+        }
+    }
+}
+
+}  // namespace tex::cli

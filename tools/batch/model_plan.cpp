@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "batch/model_plan.h"
+
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "cli/usage_error.h"
+#include "cli/value.h"
+#include "tasks/collisions.h"
+#include "tasks/depfile.h"
+#include "tasks/model_output.h"
+#include "tasks/name_pattern.h"
+
+namespace tex::cli {
+namespace {
+
+// The options for the pictures in models. Throws UsageError.
+OutputOptions picture_options(const FileOptions& files, const OutputOptions& output, const Command& command) {
+    if (output.engines.size() > 1) throw UsageError("--for", "a model is for one engine");
+    OutputOptions own = output.of(output.engines_or_none().front());
+    const std::string& name = files.output.empty() ? files.name : files.output;
+    const auto refuse = [&](std::string_view what) { throw UsageError(fmt::format("{}: {}", printable(name), what)); };
+    const Container container = own.made_container().value_or(Container::png);
+    if (container != Container::png && container != Container::jpeg) {
+        refuse(fmt::format("the pictures of a model are PNG or JPEG, not {}", name_of(kContainerNames, container)));
+    }
+    own.container = container;
+    std::ignore = own.container_for("picture" + extension_of(container), container);
+    if (own.format && !is_for_models(*own.format)) {
+        refuse(fmt::format("models hold normals as {}, not as {}",
+                           join(names_of(words_of(kEncodingNames, is_for_models))),
+                           name_of(kEncodingNames, *own.format)));
+    }
+    if (own.format) OutputOptions::check_holds(name, container, *own.format);
+    const auto idle = command.given_of({"--blue", "--alpha", "--length", "--layout", "--dds-header", "--dds-mark"});
+    if (!idle.empty()) refuse(idle.front() + " is for one map, and not for models");
+    return own;
+}
+
+std::string output_for(const Input& input, const FileOptions& files) {
+    return files.output.empty() ? files.place(files.name, files.fields_of(input.name)) : files.output;
+}
+
+// Files beside models that several of them have: the first task states them.
+void leave_out_shared(std::vector<Task>& tasks, const std::vector<std::vector<ModelFile>>& files) {
+    std::map<std::string, std::pair<std::string, bool>> known;
+    for (std::size_t k = 0; k < tasks.size(); ++k) {
+        for (const ModelFile& file : files[k]) {
+            const auto [found, is_new] = known.emplace(file.path, std::pair(file.from, file.is_changed));
+            if (!is_new && found->second == std::pair(file.from, file.is_changed))
+                std::erase(tasks[k].more_outputs, file.path);
+        }
+    }
+}
+
+}  // namespace
+
+bool writes_models(const FileOptions& files) { return names_model(files.output) || names_model(files.name); }
+
+std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOptions& files, const OutputOptions& output,
+                              const OutputRules& rules, const Command& command, const MeshReadOptions& options) {
+    const OutputOptions own = picture_options(files, output, command);
+    if (!files.output.empty() && inputs.size() > 1)
+        throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
+    std::vector<Task> tasks;
+    std::vector<std::vector<ModelFile>> all_files;
+    for (const Input& input : inputs) {
+        if (!is_model(input.name)) {
+            throw UsageError(printable(input.name), "is not a glTF model, and only a model can become a model");
+        }
+        Task task{input.name, output_for(input, files), *own.container};
+        task.engine = own.engine;
+        task.shared = rules.shared;
+        all_files.push_back(set_model_output(task, *rules.models, options));
+        tasks.push_back(std::move(task));
+    }
+    leave_out_shared(tasks, all_files);
+    if (!files.depfile.empty()) check_depfile_names(tasks);
+    check_collisions(tasks, files.depfile, files.lists());
+    return tasks;
+}
+
+}  // namespace tex::cli

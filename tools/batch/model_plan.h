@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// model_plan.h: decides which model becomes which model.
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "batch/plan.h"
+
+namespace tex::cli {
+
+// Whether the outputs that the options name are models.
+[[nodiscard]] bool writes_models(const FileOptions& files);
+
+// As plan_outputs(), of outputs that are models. Throws UsageError also for options of which models have nothing.
+[[nodiscard]] std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOptions& files,
+                                            const OutputOptions& output, const OutputRules& rules,
+                                            const Command& command, const MeshReadOptions& options);
+
+}  // namespace tex::cli

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "tasks/model_output.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "cli/text.h"
+#include "files/path_names.h"
+
+namespace tex::cli {
+namespace {
+
+// Whether two maps have one image, or images of the same file or bytes, which have the same uses.
+bool share_an_image(const Model& model, const ModelMap& a, const ModelMap& b) {
+    if (a.image == b.image) return true;
+    const ImageUse& first = model.images[static_cast<std::size_t>(a.image)].uses.front();
+    const ImageUse& second = model.images[static_cast<std::size_t>(b.image)].uses.front();
+    return first.material == second.material && first.slot == second.slot;
+}
+
+Result<ModelOutput> output_of(const std::string& input, const std::string& material, const MeshReadOptions& options) {
+    ModelOutput output;
+    const auto maps = with_maps_of_models({{input}}, material, options);
+    if (maps.front().model == nullptr) return Error{ErrorCode::unsupported, input, "is not a glTF model"};
+    if (maps.front().model->error) return *maps.front().model->error;
+    if (!maps.front().model->map) {
+        return Error{ErrorCode::unsupported, input,
+                     material.empty() ? "no material uses a normal map" : "the material uses no normal map"};
+    }
+    const auto model = maps.front().model->read(LastModel::Part::maps, options.reader);
+    if (!model) return model.error();
+    for (const Input& map : maps) {
+        if (map.model->map->image < 0) return Error{ErrorCode::bad_data, map.model->name(), "its texture has no image"};
+        const auto group = std::find_if(output.images.begin(), output.images.end(), [&](const auto& known) {
+            return share_an_image(**model, *known.front()->map, *map.model->map);
+        });
+        if (group == output.images.end())
+            output.images.push_back({map.model});
+        else
+            group->push_back(map.model);
+    }
+    return output;
+}
+
+}  // namespace
+
+bool names_model(const std::string& name) {
+    const std::string extension = lower_case(slashed(std::filesystem::path(name).extension()));
+    return extension == ".glb" || extension == ".gltf";
+}
+
+bool is_for_models(Encoding encoding) {
+    return encoding == Encoding::rgb8 || encoding == Encoding::rgba8 || encoding == Encoding::rgb16 ||
+           encoding == Encoding::rgba16;
+}
+
+ModelChanges ModelOutput::changes(Container container) const {
+    ModelChanges all;
+    for (const auto& group : images) {
+        ModelPicture& picture = all.pictures.emplace_back();
+        picture.container = container;
+        for (const auto& map : group) picture.maps.push_back(*map->map);
+    }
+    return all;
+}
+
+std::vector<ModelFile> set_model_output(Task& task, const std::string& material, const MeshReadOptions& options) {
+    auto output = std::make_shared<ModelOutput>();
+    task.model_output = output;
+    auto made = output_of(task.input, material, options);
+    std::optional<Result<ModelFiles>> files;
+    if (made) files = model_files(task.input, task.output, made->changes(task.container), options);
+    if (!made || !*files) {
+        output->error = made ? files->error() : made.error();
+        return {};
+    }
+    *output = std::move(*made);
+    std::set<std::string> read;
+    for (const auto& group : output->images) {
+        for (const auto& map : group) read.insert(map->beside.begin(), map->beside.end());
+    }
+    for (const ModelFile& file : (*files)->files) {
+        if (!file.from.empty()) read.insert(file.from);
+        if (file.path != task.output) task.more_outputs.push_back(file.path);
+    }
+    task.own.assign(read.begin(), read.end());
+    return (*files)->files;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// model_output.h: models that are written with other pictures in the slots of their normal maps.
+
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tex/format.h>
+#include <tex/mesh.h>
+#include <tex/pipeline.h>
+
+#include "tasks/model_input.h"
+#include "tasks/task.h"
+
+namespace tex::cli {
+
+// Whether a name of an output, or a pattern of such names, is that of a model.
+[[nodiscard]] bool names_model(const std::string& name);
+
+// Whether pictures of models may have this encoding: x, y and z in R, G and B, of 8 or 16 bits.
+[[nodiscard]] bool is_for_models(Encoding encoding);
+
+// What is done to a model.
+struct ModelOutput {
+    // The maps that change, in groups that show the same image.
+    std::vector<std::vector<std::shared_ptr<const ModelInput>>> images;
+    std::optional<Error> error = {};  // why nothing can be written
+
+    // A picture for each group, without its bytes.
+    [[nodiscard]] ModelChanges changes(Container container) const;
+};
+
+// Sets the model of a task whose input and output are models, and the files beside them: those that the task reads, and
+// those that it writes, which it returns. `material` is empty for all of them. What is wrong with the model becomes its
+// error.
+std::vector<ModelFile> set_model_output(Task& task, const std::string& material, const MeshReadOptions& options);
+
+}  // namespace tex::cli
