@@ -40,6 +40,7 @@ let
     "mip-normals"
     "pack-normals"
     "preview-normals"
+    "repair-normals"
     "scale-normals"
     "transfer-normals"
     "unpack-normals"
