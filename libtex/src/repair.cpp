@@ -80,7 +80,8 @@ struct State {
 class Plan {
 public:
     Plan(const std::string& file, const Texture& source, const RepairOptions& options, const Execution& execution)
-        : file_(file), source_(source), options_(options), whole_(execution), execution_(execution.quiet()) {
+        : file_(file), source_(source), options_(options), checks_(options.checks), whole_(execution),
+          execution_(execution.quiet()) {
         // How many steps there will be, nobody knows, but each may be cancelled.
         if (whole_.progress) execution_.progress = [this](double) { return whole_.progress(kFirstCheck); };
     }
@@ -95,6 +96,11 @@ public:
             auto stepped = next_step(done);
             if (!stepped) return stepped.error();
             goes_on = *stepped;
+        }
+        if (checks_.disable.size() > options_.checks.disable.size()) {
+            auto after = check(file_, current(), options_.checks, execution_);
+            if (!after) return after.error();
+            report_ = std::move(*after);
         }
         for (const Finding& finding : report_.findings) {
             if (!takes_part(options_, *finding.rule)) continue;
@@ -120,7 +126,7 @@ private:
             auto steps = steps_of(rows[k], found, y_is_known);
             if (!steps) return steps.error();
             for (RepairStep& step : *steps) {
-                if (step.certainty == RepairClass::likely && !options_.likely) continue;
+                if (!is_allowed(step)) continue;
                 auto state = try_step(step);
                 if (!state) {
                     if (state.error().code != ErrorCode::unsupported) return state.error();
@@ -133,8 +139,22 @@ private:
                 done.steps.push_back(step);
                 return true;
             }
+            if (!steps->empty() && is_allowed(steps->front())) return set_aside(*found.rule);
         }
         return false;
+    }
+
+    [[nodiscard]] bool is_allowed(const RepairStep& step) const {
+        return options_.likely || step.certainty == RepairClass::safe;
+    }
+
+    // No step removes the finding of this rule, so it may be a false one, and what it explains may be true.
+    Result<bool> set_aside(const Rule& rule) {
+        checks_.disable.emplace_back(rule.id);
+        auto report = check(file_, current(), checks_, execution_);
+        if (!report) return report.error();
+        report_ = std::move(*report);
+        return true;
     }
 
     Result<std::vector<RepairStep>> steps_of(const RuleRepair& row, const Finding& finding, bool y_is_known) {
@@ -184,7 +204,7 @@ private:
             levels.head.y_axis = state.texture.y_axis;
             levels.head.y_known = state.texture.y_known;
         }
-        auto report = check(file_, state.texture, options_.checks, execution_);
+        auto report = check(file_, state.texture, checks_, execution_);
         if (!report) return report.error();
         if (!is_gone(*report, step.rule->id) || contradicts(step, *report)) return std::optional<State>();
         const auto degrees = mean_change(current(), state.texture, execution_);
@@ -238,9 +258,11 @@ private:
         return texture;
     }
 
-    // x and y that were exchanged show the direction of green again that is required or stated. A picture that was
-    // turned by 90 degrees shows the other one.
+    // Whether the map shows that the step was not the right one. x and y that were exchanged show the direction of
+    // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. Numbers read
+    // with the right sign do not lean.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
+        if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
         if (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely) return false;
         const std::optional<YAxis> wanted =
             options_.checks.require.y ? options_.checks.require.y : std::optional(current().y_axis);
@@ -250,6 +272,7 @@ private:
     const std::string& file_;
     const Texture& source_;
     const RepairOptions& options_;
+    CheckOptions checks_;  // without the rules that were set aside
     const Execution& whole_;
     Execution execution_;  // of all that follows the first check
     std::optional<Texture> made_;

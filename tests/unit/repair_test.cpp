@@ -23,14 +23,14 @@ namespace {
 using reference::Codes;
 
 // A surface without a preferred direction, y up.
-NormalMap bumps(int side = 128) {
+NormalMap bumps(int side = 384) {
     HeightField field{Plane<float>(Extent{side, side}), 9.0f, 9.0f, Wrap::repeat, Wrap::repeat};
     const double turn = 2.0 * 3.14159265358979 / side;
     for (int k = 0; k < side * side; ++k) {
         const double x = turn * (k % side), y = turn * (k / side);
         field.height.at(k % side, k / side) =
-            static_cast<float>(0.5 + 0.15 * std::sin(3 * x + 2 * y) + 0.12 * std::sin(5 * x - 4 * y + 1.0) +
-                               0.1 * std::sin(2 * x + 7 * y + 2.0) * std::cos(6 * x));
+            static_cast<float>(0.5 + 0.15 * std::sin(9 * x + 6 * y) + 0.12 * std::sin(15 * x - 12 * y + 1.0) +
+                               0.1 * std::sin(6 * x + 21 * y + 2.0) * std::cos(18 * x));
     }
     return *bake(field);
 }
@@ -168,6 +168,31 @@ TEST(Repair, TurnsGreenOverAndStatesIt) {
     EXPECT_EQ(codes_in(*done.texture), clean().values);
     EXPECT_TRUE(done.texture->y_known);
     EXPECT_EQ(done.texture->y_axis, YAxis::up);
+}
+
+TEST(Repair, TurnsGreenOverInOneHalf) {
+    const Codes flipped = reference::flip_green(clean());
+    const auto half = [&](auto&& is_flipped) {
+        Codes codes = clean();
+        for (int j = 0; j < codes.extent.height; ++j) {
+            for (int i = 0; i < codes.extent.width; ++i) {
+                if (is_flipped(i, j)) codes.at(i, j, 1) = flipped.at(i, j, 1);
+            }
+        }
+        return reference::texture_of(codes);
+    };
+    RepairOptions options;
+    options.likely = true;
+    options.only = {"N402"};
+    for (const Texture& texture :
+         {half([](int i, int) { return i < 150; }), half([](int i, int) { return i >= 201; }),
+          half([](int, int j) { return j < 173; }), half([](int, int j) { return j >= 190; })}) {
+        ASSERT_FALSE(repaired(texture, {}).texture);
+        const Repaired done = repaired(texture, options);
+        ASSERT_TRUE(done.texture) << done.before.findings.size();
+        EXPECT_EQ(plan_of(done), "N402 invert green in a part of the map");
+        EXPECT_EQ(codes_in(*done.texture), clean().values);
+    }
 }
 
 TEST(Repair, TwoDamagesGoInTheRightOrder) {
