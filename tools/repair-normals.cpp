@@ -200,7 +200,7 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, bool is_
 }
 
 cli::ExitCode RepairNormals::finish(cli::Console& console) {
-    if (running.json || writes_to_output()) return cli::ExitCode::done;
+    if (running.json || writes_to_output() || totals_.maps == 0) return cli::ExitCode::done;
     return console.print(totals_.text(dry_run_) + "\n");
 }
 
