@@ -57,7 +57,6 @@ SENTENCES = (
     ("pack_file", " The roughness files appear after the normal map files.", ""),
     ("read_mesh", "Every part of the result passes check_part(); there is at least one part.",
      "There is at least one part."),
-    ("rule_repairs", "N404 are safe if the heights decide (PairEvidence).", "N404 are safe if the heights decide."),
     ("refit", "Errors and memory: as above,", "Errors and memory: as those of to_object_space(),"),
 )
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -11,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
-#include "reference/damage.h"
 
 namespace tex::cli {
 
@@ -19,15 +21,16 @@ class RepairNormals : public testing::Test {
 protected:
     RepairNormals() {
         scratch_.add_sample("waves.png", "waves.png");
-        EXPECT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "clean.png", "--bumpiness", "6"}).code, 0);
-        const auto texture = read_texture(scratch_.path("clean.png"));
-        codes_ = reference::codes_of(unpack(*texture)->levels.front());
-        save("light.png", reference::srgb_encode(codes_));
-        save("bgr.png", reference::exchange(codes_, 0, 2));
+        EXPECT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "marked.png", "--bumpiness", "6"}).code, 0);
+        // ImageMagick does the damage, and leaves out the mark that says what the channels hold.
+        damage("", "clean.png");
+        damage("-set colorspace RGB -colorspace sRGB", "light.png");
+        damage("-separate -swap 0,2 -combine", "bgr.png");
+        clean_ = bytes_of("clean.png");
     }
-    // Without a mark that says what the channels hold.
-    void save(const std::string& name, const reference::Codes& codes) {
-        EXPECT_TRUE(write_texture(scratch_.path(name), reference::texture_of(codes)));
+    void damage(const std::string& how, const std::string& name) {
+        const Ran ran = shell(scratch_, "convert marked.png " + how + " -strip -define png:color-type=2 " + name);
+        EXPECT_EQ(ran.code, 0) << ran.err;
     }
     Ran go(std::vector<std::string> arguments) {
         arguments.push_back("--no-sync");
@@ -39,23 +42,23 @@ protected:
         const auto& bytes = texture->levels.front().bytes;
         return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
     }
-    [[nodiscard]] std::string clean_bytes() const { return {codes_.values.begin(), codes_.values.end()}; }
 
     Scratch scratch_;
-    reference::Codes codes_;
+    std::string clean_;
 };
 
 TEST_F(RepairNormals, MendsSeveralFilesAndLeavesCleanOnesAsTheyAre) {
     const Ran ran = go({"clean.png", "light.png", "bgr.png", "--out-dir", "mended"});
     EXPECT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(scratch_.read("mended/clean.png"), scratch_.read("clean.png"));
-    EXPECT_EQ(bytes_of("mended/bgr.png"), clean_bytes());
+    EXPECT_EQ(bytes_of("mended/bgr.png"), clean_);
     const std::string mended = bytes_of("mended/light.png");
-    ASSERT_EQ(mended.size(), codes_.values.size());
+    ASSERT_EQ(mended.size(), clean_.size());
     int worst = 0;
     for (std::size_t k = 0; k < mended.size(); ++k)
-        worst = std::max(worst, std::abs(static_cast<unsigned char>(mended[k]) - codes_.values[k]));
-    EXPECT_LE(worst, 1);
+        worst =
+            std::max(worst, std::abs(static_cast<unsigned char>(mended[k]) - static_cast<unsigned char>(clean_[k])));
+    EXPECT_LE(worst, 2);  // the curve is steep where it is light
     EXPECT_NE(ran.out.find("light.png: N302 srgb-encoded: decode with the sRGB curve (safe), "), std::string::npos)
         << ran.out;
     EXPECT_NE(ran.out.find("bgr.png: N308 channels-exchanged: exchange R and B (safe), "), std::string::npos);
@@ -81,14 +84,14 @@ TEST_F(RepairNormals, APlanIsPrintedAndNothingWritten) {
 }
 
 TEST_F(RepairNormals, AMapWithAnErrorThatIsLeftIsNotWritten) {
-    save("turned.png", reference::flip_green(codes_));
+    damage("-channel G -negate +channel", "turned.png");
     const Ran ran = go({"turned.png", "-o", "out.png", "--y", "up"});
     EXPECT_EQ(ran.code, 1) << ran.err;
     EXPECT_FALSE(scratch_.has("out.png"));
     EXPECT_NE(ran.out.find("left: error N401"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("--likely repairs it"), std::string::npos) << ran.out;
     EXPECT_EQ(go({"turned.png", "-o", "out.png", "--y", "up", "--likely"}).code, 0);
-    EXPECT_EQ(bytes_of("out.png"), clean_bytes());
+    EXPECT_EQ(bytes_of("out.png"), clean_);
     scratch_.add_sample("waves.png", "grey.png");
     EXPECT_EQ(go({"grey.png", "-o", "grey_out.png"}).code, 1);
     EXPECT_FALSE(scratch_.has("grey_out.png"));
@@ -101,7 +104,7 @@ TEST_F(RepairNormals, AnInputIsItsOwnOutputOnlyIfItIsNamed) {
     const std::string clean = scratch_.read("clean.png");
     EXPECT_EQ(go({"light.png", "--out-dir", "."}).code, 2);
     EXPECT_EQ(go({"bgr.png", "-o", "bgr.png"}).code, 0);
-    EXPECT_EQ(bytes_of("bgr.png"), clean_bytes());
+    EXPECT_EQ(bytes_of("bgr.png"), clean_);
     EXPECT_EQ(go({"clean.png", "-o", "clean.png"}).code, 0);
     EXPECT_EQ(scratch_.read("clean.png"), clean);
     std::filesystem::create_symlink(scratch_.path("light.png"), scratch_.path("link.png"));
@@ -119,11 +122,11 @@ TEST_F(RepairNormals, AnotherEncodingIsThatOfPackNormals) {
 }
 
 TEST_F(RepairNormals, ReadsAndWritesStreams) {
-    const Ran ran =
-        run(scratch_, "repair-normals", {"-", "-o", "-", "--container", "png"}, {.input = scratch_.read("bgr.png")});
+    const Ran ran = run(scratch_, "repair-normals", {"-", "-o", "-", "--container", "png"},
+                        Setting{scratch_.read("bgr.png"), {}, {}});
     EXPECT_EQ(ran.code, 0) << ran.err;
     scratch_.write("out.png", ran.out);
-    EXPECT_EQ(bytes_of("out.png"), clean_bytes());
+    EXPECT_EQ(bytes_of("out.png"), clean_);
 }
 
 TEST_F(RepairNormals, SaysWhatItDoesNotTake) {
@@ -150,7 +153,9 @@ TEST_F(RepairNormals, TheManualHasTheClassOfEveryRule) {
         ASSERT_NE(at, std::string::npos) << rule.id;
         const std::string line = manual.substr(at, manual.find('\n', at) - at);
         EXPECT_EQ(line.find(", repair ") == std::string::npos, classes.empty()) << line;
-        if (!classes.empty()) EXPECT_TRUE(line.ends_with(", repair " + classes)) << line;
+        if (!classes.empty()) {
+            EXPECT_TRUE(line.ends_with(", repair " + classes)) << line;
+        }
     }
 }
 

@@ -75,7 +75,7 @@ struct RuleRepair {
 // All of them, in the order in which they are applied. Steps that say how bytes are read come first, then those of
 // channels, of directions, of vectors, of levels. N308 has two rows: a channel that holds z in the wrong place is safe;
 // x and y exchanged is likely, and is undone only if the direction of green is required or stated by the file. N401 and
-// N404 are safe if the heights decide (PairEvidence). N112 inverts green as the file states it, which is safe; if the
+// N404 are safe if the heights decide. N112 inverts green as the file states it, which is safe; if the
 // texels show that green is as required, the statement changes instead, which is likely.
 [[nodiscard]] TEX_API std::span<const RuleRepair> rule_repairs();
 
@@ -129,12 +129,12 @@ struct Repaired {
     [[nodiscard]] TEX_API bool has_errors() const;
 };
 
-// Repairs a texture. `file` is its name in the reports.
-//
-// A step is kept only if check() no longer has the finding that called for it; otherwise the texture stays as it was
-// before, and the finding is left. Values are rounded once, however many steps there are: each level is decoded, the
-// steps are applied to floats, and these are stored. Texels that no step changes keep their codes, except in formats
-// with blocks, which are encoded again. All levels take part in each step. What channels hold beside the normals stays.
+// Repairs a texture. `file` is its name in the reports. A step is kept only if check() no longer has the finding that
+// called for it; otherwise it is taken back, and the finding is left. Values are rounded once: the steps are applied to
+// decoded floats, of all levels. Codes that no step changes stay, except in blocks, which are encoded again, and so do
+// data beside the normals. Two damages can hide each other, so that the picture seems to be no normal map (N214): with
+// RepairOptions::likely, one of divide_by_alpha, exchange, encode_srgb, decode_srgb and invert is then tried first, and
+// kept if no error is left.
 //
 //     encode_srgb        c' = 12.92 c up to 0.0031308, 1.055 c^(1/2.4) - 0.055 above (IEC 61966-2-1)
 //     decode_srgb        its inverse

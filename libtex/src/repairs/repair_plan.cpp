@@ -131,6 +131,21 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
     return {step};
 }
 
+std::vector<RepairStep> guesses_for(const Rule& rule, const CheckReport& report) {
+    const int x = channel_of(report.swizzle, Component::x), z = channel_of(report.swizzle, Component::z);
+    std::vector<RepairStep> steps;
+    if (x < 0 || z < 0) return steps;
+    const auto add = [&](RepairKind kind, int channel = -1, int other = -1) {
+        steps.push_back({&rule, kind, likely, channel, other});
+    };
+    if (format_info(report.format).channels == 4) add(divide_by_alpha);
+    add(exchange, std::min(x, z), std::max(x, z));
+    add(encode_srgb);
+    add(decode_srgb);
+    add(invert, z);
+    return steps;
+}
+
 std::optional<RepairStep> repair_of(const Finding& finding, const CheckReport& report, const CheckOptions& checks) {
     for (const RuleRepair& row : kRepairs) {
         if (row.rule != finding.rule->id) continue;

@@ -14,4 +14,7 @@ namespace tex::inline v1 {
 [[nodiscard]] std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
                                                 const CheckReport& report, bool y_is_known);
 
+// The steps that may undo one of two damages that hide each other. `rule` is the one that found no normal map.
+[[nodiscard]] std::vector<RepairStep> guesses_for(const Rule& rule, const CheckReport& report);
+
 }  // namespace tex::inline v1
