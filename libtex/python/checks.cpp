@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "checks.h"
 #include "meshes.h"
 #include "modules.h"
 #include "pickling.h"
@@ -14,64 +15,12 @@
 namespace tex::python {
 namespace {
 
-// The keywords of check() and check_file().
-struct Checking {
-    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
-    py::object height = py::none(), mesh = py::none();
-    bool any_length = false;
-    std::optional<Swizzle> swizzle;
-    Decoder decoder = Decoder::gltf;
-};
-
-template <class F>
-void each_field(Checking& o, F& f) {
-    f("require", o.require, "dict[str, str | int | bool] | None");
-    f("enable", o.enable, "Sequence[str] | None");
-    f("disable", o.disable, "Sequence[str] | None");
-    f("severity", o.severity, "dict[str, str] | None");
-    f("height", o.height, "ArrayLike | HeightField | None");
-    f("mesh", o.mesh, "SelectedPart | None");
-    f("decoder", o.decoder);
-    f("any_length", o.any_length);
-    f("swizzle", o.swizzle);
+const py::dict dict_from(py::handle given, const char* name) {
+    if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict", given);
+    return py::reinterpret_borrow<py::dict>(given);
 }
 
-// The keywords of check_model().
-struct CheckingModels {
-    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
-    std::string material;
-    Decoder decoder = Decoder::gltf;
-    std::optional<TangentSource> tangents;
-
-    [[nodiscard]] Checking checks() const {
-        Checking same;
-        same.require = require;
-        same.enable = enable;
-        same.disable = disable;
-        same.severity = severity;
-        return same;
-    }
-};
-
-template <class F>
-void each_field(CheckingModels& o, F& f) {
-    f("require", o.require, "dict[str, str | int | bool] | None");
-    f("enable", o.enable, "Sequence[str] | None");
-    f("disable", o.disable, "Sequence[str] | None");
-    f("severity", o.severity, "dict[str, str] | None");
-    f("material", o.material);
-    f("decoder", o.decoder);
-    f("tangents", o.tangents);
-}
-
-struct ReadKeyword {
-    ReadOptions read;
-};
-
-template <class F>
-void each_field(ReadKeyword& o, F& f) {
-    f("read", o.read);
-}
+}  // namespace
 
 std::vector<std::string> rules_from(py::handle given, const char* name) {
     std::vector<std::string> rules;
@@ -81,18 +30,6 @@ std::vector<std::string> rules_from(py::handle given, const char* name) {
     for (const py::handle rule : given) rules.push_back(text_from(rule, name));
     return rules;
 }
-
-const py::dict dict_from(py::handle given, const char* name) {
-    if (!py::isinstance<py::dict>(given)) raise_type(name, "a dict", given);
-    return py::reinterpret_borrow<py::dict>(given);
-}
-
-// CheckOptions with what they refer to.
-struct Checks {
-    CheckOptions options;
-    HeightField height;
-    std::optional<MeshToCheck> mesh;
-};
 
 void read_checks(const Checking& given, Checks& checks) {
     CheckOptions& options = checks.options;
@@ -126,6 +63,36 @@ void read_checks(const Checking& given, Checks& checks) {
         const SelectedPart& selected = selected_from(given.mesh, "mesh");
         options.mesh = &checks.mesh.emplace(MeshToCheck{selected, given.decoder});
     }
+}
+
+namespace {
+
+// The keywords of check_model().
+struct CheckingModels {
+    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
+    std::string material;
+    Decoder decoder = Decoder::gltf;
+    std::optional<TangentSource> tangents;
+
+    [[nodiscard]] Checking checks() const {
+        Checking same;
+        same.require = require;
+        same.enable = enable;
+        same.disable = disable;
+        same.severity = severity;
+        return same;
+    }
+};
+
+template <class F>
+void each_field(CheckingModels& o, F& f) {
+    f("require", o.require, "dict[str, str | int | bool] | None");
+    f("enable", o.enable, "Sequence[str] | None");
+    f("disable", o.disable, "Sequence[str] | None");
+    f("severity", o.severity, "dict[str, str] | None");
+    f("material", o.material);
+    f("decoder", o.decoder);
+    f("tangents", o.tangents);
 }
 
 // A report without a file that could be read has nothing to say.

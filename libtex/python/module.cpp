@@ -25,6 +25,7 @@ PYBIND11_MODULE(_tex, extension) {
     tex::python::add_spaces(module);
     tex::python::add_transfers(module);
     tex::python::add_checks(module);
+    tex::python::add_repairs(module);
     tex::python::add_pictures(module);
     tex::python::add_programs(module);
     module.stub("");

@@ -20,6 +20,7 @@ void add_meshes(Module& module);
 void add_spaces(Module& module);
 void add_transfers(Module& module);
 void add_checks(Module& module);
+void add_repairs(Module& module);
 void add_pictures(Module& module);
 void add_programs(Module& module);
 

@@ -11,42 +11,21 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <tex/tex.h>
 
+#include "bench/wild_maps.h"
 #include "reference/damage.h"
 
 namespace {
 
 using namespace tex;
 using namespace tex::reference;
-
-const std::string kData = TEX_SOURCE_DIR "/../shared/data/wild4/";
-constexpr int kMost = 512;
-
-std::vector<std::string> clean_maps(std::size_t count) {
-    std::vector<std::string> all;
-    std::ifstream in(kData + "labels.tsv");
-    for (std::string line; std::getline(in, line);) {
-        std::istringstream fields(line);
-        std::string file, kind, findings;
-        std::getline(fields, file, '\t');
-        std::getline(fields, kind, '\t');
-        std::getline(fields, findings, '\t');
-        if (kind == "normal" && findings.empty()) all.push_back(file);
-    }
-    std::sort(all.begin(), all.end());
-    std::vector<std::string> some;
-    for (std::size_t k = 0; k < count && !all.empty(); ++k) some.push_back(all[k * all.size() / count]);
-    return some;
-}
 
 struct Damage {
     const char* name;
@@ -112,23 +91,6 @@ std::optional<Texture> stored_as(const Codes& codes, std::optional<Encoding> enc
 bool has(const CheckReport& report, const std::string& ids) {
     return std::any_of(report.findings.begin(), report.findings.end(),
                        [&](const Finding& finding) { return ids.find(finding.rule->id) != std::string::npos; });
-}
-
-// The middle of the map, as it is stored.
-std::optional<Codes> middle_of(const std::string& file) {
-    auto texture = read_texture(kData + file);
-    if (!texture) return std::nullopt;
-    UnpackOptions options;
-    options.y_axis = YAxis::up;
-    options.keep_length = true;
-    texture->levels.resize(1);
-    auto chain = unpack(*texture, options);
-    if (!chain) return std::nullopt;
-    const NormalMap& map = chain->levels.front();
-    const int side = std::min({map.extent().width, map.extent().height, kMost}) / 8 * 8;
-    if (side < 64) return std::nullopt;
-    const int x = (map.extent().width - side) / 16 * 8, y = (map.extent().height - side) / 16 * 8;
-    return codes_of(crop(map, x, y, {side, side}));
 }
 
 }  // namespace

@@ -85,7 +85,11 @@ protected:
         EXPECT_EQ(ran.code, 0) << fix << ran.err;
         const auto after = check(fixed, options);
         EXPECT_EQ(ids(after).count(id), 0u) << fix << after;
-        for (const std::string& left : ids(after)) EXPECT_EQ(ids(before).count(left), 1u) << fix << after;
+        // What the fault hid may show now.
+        for (const std::string& left : ids(after)) {
+            const bool was_hidden = find_rule(id)->explains.find(left) != std::string_view::npos;
+            EXPECT_TRUE(was_hidden || ids(before).count(left) == 1u) << fix << after;
+        }
         expect_nothing_lost(before, after, fix);
         return fixed;
     }
@@ -139,7 +143,8 @@ TEST_F(Fixes, RepairEveryBrokenSample) {
         if (!name.starts_with("N")) continue;
         const std::string id = name.substr(0, 4);
         const auto found = finding(check(name, options[id]), id);
-        if (find_rule(id)->fix.find("-normals FILE") == std::string_view::npos) {
+        // Exchanged channels have a command if it is z that changed places.
+        if (find_rule(id)->fix.find("-normals FILE") == std::string_view::npos && id != "N308") {
             EXPECT_FALSE(found.contains("fix")) << found;
             EXPECT_EQ(found.value("advice", ""), find_rule(id)->fix);
             continue;
@@ -148,7 +153,7 @@ TEST_F(Fixes, RepairEveryBrokenSample) {
         repair(name, id, options[id]);
         repaired.insert(id);
     }
-    EXPECT_EQ(repaired.size(), 24u);
+    EXPECT_EQ(repaired.size(), 30u);
 }
 
 struct Kind {

@@ -83,6 +83,9 @@ const ReportLine kReports[] = {
     {"scale-normals", {"n.png", "-o", "s.png", "--scale", "2"}},
     {"blend-normals", {"n.png", "n.png", "-o", "l.png"}},
     {"check-normals", {"n.png", "bad.png"}},
+    {"repair-normals", {"bad.png", "-o", "rb.png", "--likely"}},
+    {"repair-normals", {"blue.png", "-o", "rc.png", "--likely"}},
+    {"repair-normals", {"half.png", "-o", "rd.png", "--dry-run", "--only", "N402", "--likely"}},
     {"compare-normals", {"n.png", "s.png"}},
     {"compare-normals", {"n.png", "--rdo-means", "0,1"}},
     {"preview-normals", {"n.png", "-o", "v.png"}},
@@ -95,6 +98,8 @@ const ReportLine kReports[] = {
 void add_reports(const Scratch& scratch, Facts& lines) {
     scratch.add_sample("bricks.png", "a.png");
     scratch.add_sample("broken/N201-not-unit-length.png", "bad.png");
+    scratch.add_sample("broken/N220-blue-inverted.png", "blue.png");
+    scratch.add_sample("broken/N402-mixed-y.png", "half.png");
     scratch.add_sample("crate_low.glb", "low.glb");
     scratch.add_sample("crate_high.glb", "high.glb");
     scratch.write("sheet.obj",

@@ -229,12 +229,14 @@ void Converter::note_output(Job& job, const OutputFacts& facts, const std::strin
 
 ExitCode Batch::work(Console& console) {
     if (running.quiet) console.be_quiet();
-    if (files.output == "-" && console.host().out_is_terminal())
+    if (files.output == "-" && files.writes() && console.host().out_is_terminal())
         throw UsageError("-o -: standard output is a terminal");
     const auto tasks = plan();
     if (!tasks) return code_of(tasks.error(), console);
     if (const auto checked = check(*tasks); !checked) return code_of(checked, console);
-    if (const auto created = create_folders(files, *tasks); !created) return code_of(created, console);
+    if (files.writes()) {
+        if (const auto created = create_folders(files, *tasks); !created) return code_of(created, console);
+    }
     return run_tasks(*tasks, console);
 }
 

@@ -177,7 +177,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
     check_engines(tasks, files, output.engines.size());
     if (rules.relate) rules.relate(tasks);
     if (!files.depfile.empty()) check_depfile_names(tasks);
-    check_collisions(tasks, files.depfile, files.lists());
+    check_collisions(tasks, files.depfile, files.lists(), rules.in_place && !files.output.empty());
     return tasks;
 }
 

@@ -31,6 +31,7 @@ struct OutputRules {
     // Inputs are meshes, and outputs with <UDIM> in their names are made for each of the tiles that this returns. None:
     // the mesh has none, or cannot be read, of which its job complains. Empty: the inputs' names say the tiles.
     std::function<std::vector<int>(const std::string& input)> tiles = {};
+    bool in_place = false;  // -o may name the input itself
 };
 
 // Completes a task that has its input and its output, which may contain kLevelMark; it may have a tile and places.

@@ -62,7 +62,8 @@ void FileOptions::check(const Command& command) {
     if (!root.empty() && !name.empty() && !NamePattern(name).uses("dir"))
         throw UsageError("--root has no effect, because --name does not contain {dir}");
     check_inputs(command);
-    if (output.empty() && out_dir.empty() && name.empty()) throw UsageError("no output: give -o FILE or --out-dir DIR");
+    if (writes() && output.empty() && out_dir.empty() && name.empty())
+        throw UsageError("no output: give -o FILE or --out-dir DIR");
     if (depfile == "-") throw UsageError("--depfile", "needs a file, not standard output");
     if (is_folder(output)) {
         throw UsageError(fmt::format("-o {}: is a folder; --out-dir writes into one", printable(output)));

@@ -31,6 +31,10 @@ struct FileOptions {
     bool reads_folders = false;         // folders among the inputs stand for the pictures in them
     mutable std::int64_t left_out = 0;  // after list_inputs(): the other files of such folders
     bool tiles = false;                 // inputs are tiles of terrains, see batch/grid.h
+    // Whether the run writes nothing, so that no output need be named; empty: it writes.
+    std::function<bool()> writes_nothing = {};
+
+    [[nodiscard]] bool writes() const { return !writes_nothing || !writes_nothing(); }
 
     // `joins`: -o can take many inputs and make one output from them; the help says so.
     void add(Command& command, bool joins = false);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 #include <tex/file.h>
+#include <tex/repair.h>
 
 #include "cli/text.h"
 #include "options/output.h"
@@ -289,8 +290,38 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
 
 }  // namespace
 
+namespace {
+
+constexpr std::string_view kRepair = "repair-normals FILE";
+
+// The command for what repair-normals undoes and no other command does; empty for other findings. It keeps the format
+// and the data beside the normals.
+std::string repair_command(const Finding& finding, const CheckReport& report, const Requirements& require) {
+    CheckOptions checks;
+    checks.require = require;
+    const auto step = repair_of(finding, report, checks);
+    if (!step || !report.map.empty()) return {};
+    std::string text(finding.rule->fix);
+    if (finding.rule->id == "N308") {
+        text =
+            std::string(kRepair) + (step->certainty == RepairClass::likely ? " --likely --y WANTED" : "") + " -o FIXED";
+        replace_word(text, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
+    }
+    if (!text.starts_with(kRepair)) return {};
+    const std::optional<Container> own = container_of(report.file);
+    const bool is_kept = own && *own != Container::jpeg;
+    replace_word(text, "FIXED", "FIXED" + extension_of(is_kept ? *own : Container::png));
+    replace_word(text, "FILE", shell_file(report.file));
+    return text;
+}
+
+}  // namespace
+
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
+    if (std::string command = repair_command(finding, report, require); !command.empty())
+        return {std::move(command), true};
+    if (finding.rule->fix.starts_with(kRepair)) return {"Export the map again from its source."};
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data && !(carries_others(*finding.rule, report) && target_of(id, report, require))) {

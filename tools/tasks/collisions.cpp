@@ -30,7 +30,8 @@ std::vector<std::string> files_of(const Task& task) {
 
 }  // namespace
 
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists) {
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists,
+                      bool in_place) {
     FileTable<std::string> inputs;
     for (const NamedFile& list : lists) inputs.add(list.path, "the file of " + list.option);
     for (const Task& task : tasks) {
@@ -46,7 +47,7 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     FileTable<const Task*> outputs;
     for (const Task& task : tasks) {
         for (const std::string& path : files_of(task)) {
-            check_not_an_input(path);
+            if (!in_place || path != task.input) check_not_an_input(path);
             if (is_special_file(path)) continue;
             const Task* const* const known = outputs.add(path, &task);
             if (known == nullptr) continue;

@@ -18,8 +18,10 @@ struct NamedFile {
 
 // Throws UsageError if two tasks would write the same file, or if an output or the depfile is an input or one of the
 // `lists` that inputs were read from. Files are compared by name, through symbolic and hard links, and as the file
-// behind standard input or output. Pipes, FIFOs and devices do not count.
-void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists);
+// behind standard input or output. Pipes, FIFOs and devices do not count. With `in_place`, the output of a task may
+// have the name of its input.
+void check_collisions(const std::vector<Task>& tasks, const std::string& depfile, const std::vector<NamedFile>& lists,
+                      bool in_place = false);
 
 // Throws UsageError if `document`, which the run writes, is not the name of a file, is an input, or is one of `others`.
 // `others` are the other files that the run reads or writes; entries without a name do not count.

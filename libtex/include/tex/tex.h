@@ -50,7 +50,7 @@
 //     surface.h   integrate(), curvature()              mesh.h      meshes, models, tangents, convert, transfer()
 //     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), steps, write_model()
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
-//     tex_c.h     the same for C, Rust and C#
+//     repair.h    repair()                              tex_c.h     the same for C, Rust and C#
 //
 // Options stand beside their verb. Everything is in the inline namespace v1. Its number is that of the shared library
 // (libtex.so.1): both change with the binary interface, so that no program links to one that it was not built for.
@@ -75,6 +75,7 @@
 #include <tex/pack.h>
 #include <tex/pipeline.h>
 #include <tex/preview.h>
+#include <tex/repair.h>
 #include <tex/surface.h>
 #include <tex/types.h>
 

@@ -162,10 +162,9 @@ constexpr Rule kRules[] = {
 
     {"N220", "blue-inverted", values, error, true, "Blue is inverted.",
      "z is below 0 nearly everywhere, while x and y lie about 0, as in tangent space. An exporter or an image editor "
-     "inverted blue, or the whole picture. Lit from the front, the surface is black.",
-     "Invert in an image editor what was inverted: the picture, or blue alone. If it was blue, --swizzle rg reads the "
-     "map, too, and rebuilds z; if it was the picture, that would make dents of its bumps.",
-     "N115 N201 N202 N205 N207 N213 N214 N215 N305 N310 N402"},
+     "inverted blue, or the whole picture. Lit from the front, the surface is black. If it was the picture, "
+     "invert it in an image editor: inverting blue alone would make dents of its bumps.",
+     "repair-normals FILE --likely -o FIXED", "N115 N201 N202 N205 N207 N213 N214 N215 N305 N310 N402"},
     {"N221", "blue-from-zero", values, warning, true, "Blue holds z from 0 to 1.",
      "Vectors are of unit length if z is blue, and not if it is 2 blue - 1. Readers that do not rebuild z get bent "
      "normals, which point into the surface where it is steep.",
@@ -181,19 +180,20 @@ constexpr Rule kRules[] = {
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
-     "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values.",
-     "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
-     "with coarser steps: convert FILE -set colorspace RGB -colorspace sRGB FIXED.png",
+     "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values. Export the map "
+     "again as data (Non-Color, Raw, sRGB off) if you have its source: turning the curve back leaves coarser steps.",
+     "repair-normals FILE -o FIXED",
      "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
-     "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour.",
-     "Export it again as data (Non-Color, Raw, sRGB off). If the source is lost, ImageMagick turns the curve back, "
-     "with coarser steps: convert FILE -set colorspace sRGB -colorspace RGB -set colorspace sRGB FIXED.png",
+     "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour. Export the map again "
+     "as data (Non-Color, Raw, sRGB off) if you have its source: turning the curve back leaves coarser steps.",
+     "repair-normals FILE -o FIXED",
      "N201 N202 N203 N205 N206 N207 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N303", "premultiplied", damage, error, true, "R, G and B were multiplied by alpha.",
      "No channel exceeds alpha, and dividing by it makes the vectors longer and even. Image libraries do this on "
-     "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha).",
-     "", "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
+     "reading unless told otherwise (OpenImageIO: oiio:UnassociatedAlpha). Under a low alpha, little is left.",
+     "repair-normals FILE -o FIXED",
+     "N201 N202 N205 N207 N212 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
     {"N304", "jpeg-blocks", damage, warning, true, "The map shows the 8x8 blocks of lossy JPEG.",
      "The cosine transform of aligned blocks is quantised as JPEG of about quality 65 or less does it, or steps stand "
      "out at every eighth column and row. A picture that was enlarged without a filter looks alike. Chroma subsampling "
@@ -232,8 +232,8 @@ constexpr Rule kRules[] = {
      "Bake the map again, or compress it less.", "N403"},
     {"N311", "wrong-sign", damage, error, true, "The file declares the wrong sign.",
      "Its texels are those of the signed format, and the header names the unsigned one, or the other way round. Then "
-     "flat texels point outwards along a diagonal.",
-     "Write the file again, or its header alone, with the format that the message names.",
+     "flat texels point outwards along a diagonal. The message names the right format; only the header changes.",
+     "repair-normals FILE -o FIXED",
      "N201 N202 N203 N205 N206 N207 N208 N213 N214 N215 N301 N302 N305 N306 N307 N308 N309 N310 N401 N402 N403 N404 "
      "N501 N502 N503 N504"},
     {"N312", "scaled-up", damage, note, true, "The map was enlarged.",

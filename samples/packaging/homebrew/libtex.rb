@@ -32,7 +32,7 @@ class Libtex < Formula
 
   COMMANDS = %w[
     bake-normals blend-normals build-normals check-normals compare-normals convert-normals integrate-normals
-    mip-normals pack-normals preview-normals scale-normals transfer-normals unpack-normals
+    mip-normals pack-normals preview-normals repair-normals scale-normals transfer-normals unpack-normals
   ].freeze
   FILES = %w[
     include/tex/tex.h lib/libtex.so lib/pkgconfig/libtex.pc libexec/libtex/tex-reader

@@ -41,6 +41,7 @@ let
     "mip-normals"
     "pack-normals"
     "preview-normals"
+    "repair-normals"
     "scale-normals"
     "transfer-normals"
     "unpack-normals"

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "repairs/repair_plan.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+#include <tex/format.h>
+
+namespace tex::inline v1 {
+namespace {
+
+using enum RepairClass;
+using enum RepairKind;
+
+constexpr RuleRepair kRepairs[] = {
+    // How the bytes are read.
+    {"N311", safe, change_sign},
+    {"N111", safe, drop_srgb},
+    // What the channels went through. N303 first: what is multiplied by alpha is darker, too.
+    {"N303", safe, divide_by_alpha},
+    {"N301", safe, encode_srgb},
+    {"N302", safe, decode_srgb},
+    // Which channel holds what.
+    {"N308", safe, exchange},
+    {"N308", likely, exchange},
+    {"N220", likely, invert},
+    {"N221", safe, stretch_z},
+    {"N209", safe, rebuild_z},
+    // Directions.
+    {"N402", likely, invert_part},
+    {"N401", likely, invert},
+    {"N404", likely, state_y},
+    {"N112", safe, invert},
+    // Vectors.
+    {"N215", likely, fill_background},
+    {"N205", likely, normalize},
+    {"N201", likely, normalize},
+    // Levels, which follow from all of the above.
+    {"N501", safe, rebuild_levels},
+    {"N502", likely, rebuild_levels},
+    {"N503", likely, rebuild_levels},
+    {"N103", likely, rebuild_levels},
+};
+
+int channel_of(const Swizzle& swizzle, Component component) {
+    const auto at = std::find(swizzle.begin(), swizzle.end(), component);
+    return at == swizzle.end() ? -1 : static_cast<int>(at - swizzle.begin());
+}
+
+// Two channels are exchanged: z and the one that the finding names, or x and y.
+std::vector<RepairStep> exchanges(const RepairStep& step, const Finding& finding, const CheckReport& report,
+                                  bool y_is_known) {
+    const int x = channel_of(report.swizzle, Component::x), y = channel_of(report.swizzle, Component::y);
+    const int z = channel_of(report.swizzle, Component::z);
+    const bool misplaces_z = finding.unit == "component";
+    std::vector<RepairStep> steps;
+    const auto add = [&](int a, int b) {
+        steps.push_back(step);
+        steps.back().channel = std::min(a, b);
+        steps.back().other = std::max(a, b);
+    };
+    if (misplaces_z && step.certainty == safe && z >= 0) {
+        add(x, z);
+        add(y, z);
+    } else if (!misplaces_z && step.certainty == likely && y_is_known) {
+        add(x, y);
+    }
+    return steps;
+}
+
+}  // namespace
+
+std::span<const RuleRepair> rule_repairs() { return kRepairs; }
+
+RepairClass repair_class(const Rule& rule) {
+    for (const RuleRepair& row : kRepairs) {
+        if (row.rule == rule.id) return row.certainty;
+    }
+    return never;
+}
+
+std::string text_of(const RepairStep& step) {
+    const auto letter = [](int channel) { return std::string(1, "RGBA"[channel]); };
+    switch (step.kind) {
+        case exchange: return "exchange " + letter(step.channel) + " and " + letter(step.other);
+        case invert: return "invert " + letter(step.channel);
+        default: break;
+    }
+    for (const Named<RepairKind>& row : kRepairKindNames) {
+        if (row.value == step.kind) return std::string(row.meaning);
+    }
+    return {};
+}
+
+std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding, const CheckReport& report,
+                                  bool y_is_known) {
+    RepairStep step{finding.rule, row.kind, row.certainty};
+    const int x = channel_of(report.swizzle, Component::x), y = channel_of(report.swizzle, Component::y);
+    const int z = channel_of(report.swizzle, Component::z);
+    if (x < 0 || y < 0) return {};
+    const bool by_heights = report.pair && report.pair->decides();
+    switch (row.kind) {
+        case exchange: return exchanges(step, finding, report, y_is_known);
+        case invert:
+            step.channel = row.rule == "N220" ? z : by_heights && report.pair->strength < 0.0 ? x : y;
+            if (row.rule == "N401" && by_heights) step.certainty = safe;
+            if (row.rule == "N112" && report.y.y) step = {finding.rule, state_y, likely};  // green is as required
+            if (step.kind == invert && step.channel < 0) return {};
+            break;
+        case state_y:
+            if (by_heights && report.pair->strength < 0.0) {
+                step.kind = invert;
+                step.channel = x;
+            }
+            if (by_heights) step.certainty = safe;
+            break;
+        case divide_by_alpha:
+            if (format_info(report.format).channels < 4) return {};
+            break;
+        case rebuild_z:
+            if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
+            break;
+        case stretch_z:
+        case normalize:
+            if (z < 0) return {};
+            break;
+        default: break;
+    }
+    return {step};
+}
+
+std::vector<RepairStep> guesses_for(const Rule& rule, const CheckReport& report) {
+    const int x = channel_of(report.swizzle, Component::x), z = channel_of(report.swizzle, Component::z);
+    std::vector<RepairStep> steps;
+    if (x < 0 || z < 0) return steps;
+    const auto add = [&](RepairKind kind, int channel = -1, int other = -1) {
+        steps.push_back({&rule, kind, likely, channel, other});
+    };
+    if (format_info(report.format).channels == 4) add(divide_by_alpha);
+    add(exchange, std::min(x, z), std::max(x, z));
+    add(encode_srgb);
+    add(decode_srgb);
+    add(invert, z);
+    return steps;
+}
+
+std::optional<RepairStep> repair_of(const Finding& finding, const CheckReport& report, const CheckOptions& checks) {
+    for (const RuleRepair& row : kRepairs) {
+        if (row.rule != finding.rule->id) continue;
+        const std::vector<RepairStep> steps = steps_for(row, finding, report, checks.require.y.has_value());
+        if (!steps.empty()) return steps.front();
+    }
+    return std::nullopt;
+}
+
+}  // namespace tex::inline v1

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// repair_plan.h: which steps may undo a finding.
+
+#pragma once
+
+#include <vector>
+
+#include <tex/repair.h>
+
+namespace tex::inline v1 {
+
+// The steps to try for this row of rule_repairs(), the likeliest first; none if it does not concern the finding, or if
+// the layout has no room for the result. `y_is_known`: the direction of green is required or stated.
+[[nodiscard]] std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
+                                                const CheckReport& report, bool y_is_known);
+
+// The steps that may undo one of two damages that hide each other. `rule` is the one that found no normal map.
+[[nodiscard]] std::vector<RepairStep> guesses_for(const Rule& rule, const CheckReport& report);
+
+}  // namespace tex::inline v1

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "repairs/texel_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <tex/mip.h>
+
+#include "checks/centre.h"
+#include "checks/texel_counts.h"
+#include "stream/filled_map.h"
+#include "threads/parallel.h"
+
+namespace tex::inline v1 {
+namespace {
+
+// Codes of 16 bits, among which those of 8 bits are.
+constexpr int kCurveTop = 65535;
+
+// A curve of stored values. Where a value is a code of 8 or 16 bits it was computed before; the result is the same.
+class Curve {
+public:
+    explicit Curve(double (*of)(double)) : of_(of), at_(kCurveTop + 1) {
+        for (int k = 0; k <= kCurveTop; ++k) at_[static_cast<std::size_t>(k)] = exact(input(k));
+    }
+    [[nodiscard]] float operator()(float c) const {
+        c = std::clamp(c, 0.0f, 1.0f);
+        const int k = static_cast<int>(c * static_cast<float>(kCurveTop) + 0.5f);
+        return input(k) == c ? at_[static_cast<std::size_t>(k)] : exact(c);
+    }
+
+private:
+    [[nodiscard]] static float input(int k) { return static_cast<float>(k) / static_cast<float>(kCurveTop); }
+    [[nodiscard]] float exact(float c) const { return static_cast<float>(of_(static_cast<double>(c))); }
+
+    double (*of_)(double);
+    std::vector<float> at_;
+};
+
+// A level whose vectors change, and where they are.
+struct LevelTexels {
+    Image& image;
+    int x, y, z;  // channels; z may be -1
+    bool is_signed;
+
+    [[nodiscard]] float* row(int channel, int j) const {
+        return image.planes[static_cast<std::size_t>(channel)].row(j);
+    }
+    [[nodiscard]] float component(float c) const { return is_signed ? c : 2.0f * c - 1.0f; }
+    [[nodiscard]] float code(float n) const { return is_signed ? n : 0.5f * n + 0.5f; }
+};
+
+using RowChange = std::function<void(const LevelTexels& texels, int row)>;
+
+Result<void> each_row(StoredLevels& levels, const Execution& execution, const RowChange& change) {
+    for (int k = 0; k < static_cast<int>(levels.levels.size()); ++k) {
+        const Stored stored = levels.stored(k);
+        const LevelTexels texels{levels.levels[static_cast<std::size_t>(k)], stored.channel(Component::x),
+                                 stored.channel(Component::y), stored.channel(Component::z), levels.is_signed};
+        const auto rows = [&](int begin, int end) {
+            for (int j = begin; j < end; ++j) change(texels, j);
+        };
+        const Extent extent = stored.extent();
+        if (auto done = parallel_for(execution, extent.height, rows_per_piece(extent), rows); !done) return done;
+    }
+    return {};
+}
+
+Result<void> apply_curve(double (*of)(double), StoredLevels& levels, const Execution& execution) {
+    const Curve curve(of);
+    return each_row(levels, execution, [&](const LevelTexels& t, int j) {
+        for (const int channel : {t.x, t.y, t.z}) {
+            if (channel < 0) continue;
+            float* const row = t.row(channel, j);
+            std::transform(row, row + t.image.extent().width, row, curve);
+        }
+    });
+}
+
+void divide_row(const LevelTexels& t, int j) {
+    const float* const alpha = t.row(3, j);
+    for (const int channel : {t.x, t.y, t.z}) {
+        if (channel < 0) continue;
+        float* const row = t.row(channel, j);
+        const float flat = t.code(channel == t.z ? 1.0f : 0.0f);
+        for (int i = 0; i < t.image.extent().width; ++i)
+            row[i] = alpha[i] > 0.0f ? std::min(row[i] / alpha[i], 1.0f) : flat;
+    }
+}
+
+void normalize_row(const LevelTexels& t, int j) {
+    for (int i = 0; i < t.image.extent().width; ++i) {
+        float &x = t.row(t.x, j)[i], &y = t.row(t.y, j)[i], &z = t.row(t.z, j)[i];
+        const float a = t.component(x), b = t.component(y), c = t.component(z);
+        const float length = std::sqrt(a * a + b * b + c * c);
+        const bool is_null = !(length >= kNullLength);
+        x = t.code(is_null ? 0.0f : a / length);
+        y = t.code(is_null ? 0.0f : b / length);
+        z = t.code(is_null ? 1.0f : c / length);
+    }
+}
+
+void rebuild_z_row(const LevelTexels& t, int j) {
+    for (int i = 0; i < t.image.extent().width; ++i) {
+        const float a = t.component(t.row(t.x, j)[i]), b = t.component(t.row(t.y, j)[i]);
+        t.row(2, j)[i] = t.code(std::sqrt(std::max(0.0f, 1.0f - a * a - b * b)));
+    }
+}
+
+void invert_row(const LevelTexels& t, int channel, int j, int begin, int end) {
+    float* const row = t.row(channel, j);
+    std::transform(row + begin, row + end, row + begin, [&](float c) { return t.is_signed ? -c : 1.0f - c; });
+}
+
+// The base level as unit vectors, with the data beside them.
+NormalMap base_of(const StoredLevels& levels) {
+    const Stored stored = levels.stored(0);
+    const Extent extent = stored.extent();
+    NormalMap map(extent);
+    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float a = stored.component(x, i, j), b = stored.component(y, i, j);
+            const float c = z < 0 ? std::sqrt(std::max(0.0f, 1.0f - a * a - b * b)) : stored.component(z, i, j);
+            const float length = std::sqrt(a * a + b * b + c * c);
+            const bool is_null = !(length >= kNullLength);
+            map.x.at(i, j) = is_null ? 0.0f : a / length;
+            map.y.at(i, j) = is_null ? 0.0f : b / length;
+            map.z.at(i, j) = is_null ? 1.0f : c / length;
+        }
+    }
+    const auto& planes = levels.levels.front().planes;
+    const auto is_beside = [&](std::size_t c) {
+        return c < planes.size() && static_cast<int>(c) != x && static_cast<int>(c) != y && static_cast<int>(c) != z;
+    };
+    if (is_beside(2)) map.blue = planes[2].clone();
+    if (is_beside(3)) map.alpha = planes[3].clone();
+    return map;
+}
+
+Result<void> build_levels(const MipOptions& mip, bool all, StoredLevels& levels, const Execution& execution) {
+    const Stored stored = levels.stored(0);
+    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
+    if ((x > 0 && y > 0 && z != 0) && levels.levels.front().planes.size() == 4 && !levels.keeps_blocks)
+        return Error{ErrorCode::unsupported, {}, "R holds other data, which levels are not built of"};
+    MipOptions options = mip;
+    options.levels = all ? 0 : static_cast<int>(levels.levels.size());
+    options.fade.reset();
+    auto chain = build_mip_chain(base_of(levels), options, execution);
+    if (!chain) return chain.error();
+    const std::vector<std::string> names = levels.levels.front().names;
+    const std::size_t channels = names.size();
+    levels.levels.resize(1);
+    for (std::size_t k = 1; k < chain->levels.size(); ++k) {
+        NormalMap& map = chain->levels[k];
+        Image image;
+        image.names = names;
+        image.sample = levels.levels.front().sample;
+        image.bits = levels.levels.front().bits;
+        for (std::size_t c = 0; c < channels; ++c) {
+            const int at = static_cast<int>(c);
+            const bool is_component = at == x || at == y || at == z;
+            Plane<float>& from = at == x ? map.x : at == y ? map.y : at == z ? map.z : c == 2 ? map.blue : map.alpha;
+            Plane<float> plane = from.empty() ? Plane<float>(map.extent(), 1.0f) : from.clone();
+            for (int j = 0; is_component && !levels.is_signed && j < map.extent().height; ++j) {
+                float* const row = plane.row(j);
+                std::transform(row, row + map.extent().width, row, [](float n) { return 0.5f * n + 0.5f; });
+            }
+            image.planes.push_back(std::move(plane));
+        }
+        levels.levels.push_back(std::move(image));
+    }
+    return {};
+}
+
+Result<void> fill_base(const MipOptions& mip, const Texture& current, StoredLevels& levels,
+                       const Execution& execution) {
+    Texture base = levels.head;
+    base.format = current.format;
+    base.levels = {current.levels.front()};
+    auto filled = decode_filled(base, levels.head.swizzle, {}, execution);
+    if (!filled) return filled.error();
+    levels.levels.front() = std::move(*filled);
+    return levels.levels.size() > 1 ? build_levels(mip, false, levels, execution) : Result<void>();
+}
+
+}  // namespace
+
+Result<void> apply_step(const RepairStep& step, const MipOptions& mip, const Texture& current, StoredLevels& levels,
+                        const Execution& execution) {
+    const auto row_change = [&](const RowChange& change) { return each_row(levels, execution, change); };
+    switch (step.kind) {
+        case RepairKind::encode_srgb: return apply_curve(srgb_encoded, levels, execution);
+        case RepairKind::decode_srgb: return apply_curve(srgb_decoded, levels, execution);
+        case RepairKind::divide_by_alpha: return row_change(divide_row);
+        case RepairKind::normalize: return row_change(normalize_row);
+        case RepairKind::exchange:
+            for (Image& image : levels.levels)
+                std::swap(image.planes[static_cast<std::size_t>(step.channel)],
+                          image.planes[static_cast<std::size_t>(step.other)]);
+            return {};
+        case RepairKind::invert:
+            return row_change(
+                [&](const LevelTexels& t, int j) { invert_row(t, step.channel, j, 0, t.image.extent().width); });
+        case RepairKind::stretch_z:
+            return row_change([](const LevelTexels& t, int j) {
+                float* const row = t.row(t.z, j);
+                std::transform(row, row + t.image.extent().width, row, [](float c) { return 0.5f * c + 0.5f; });
+            });
+        case RepairKind::rebuild_z:
+            if (auto done = row_change(rebuild_z_row); !done) return done;
+            levels.head.swizzle[2] = Component::z;
+            return {};
+        case RepairKind::invert_part:
+            return row_change([&](const LevelTexels& t, int j) {
+                // Smaller levels have the same share of the part.
+                const Extent own = t.image.extent(), base = levels.levels.front().extent();
+                const auto scaled = [](int at, int size, int whole) {
+                    return static_cast<int>((static_cast<std::int64_t>(at) * size + whole / 2) / whole);
+                };
+                const Region& part = *step.part;
+                if (j < scaled(part.y, own.height, base.height) ||
+                    j >= scaled(part.y + part.height, own.height, base.height))
+                    return;
+                invert_row(t, t.y, j, scaled(part.x, own.width, base.width),
+                           scaled(part.x + part.width, own.width, base.width));
+            });
+        case RepairKind::fill_background: return fill_base(mip, current, levels, execution);
+        case RepairKind::rebuild_levels: return build_levels(mip, step.rule->id == "N103", levels, execution);
+        case RepairKind::change_sign:
+        case RepairKind::drop_srgb:
+        case RepairKind::state_y: break;  // these change no texel
+    }
+    return {};
+}
+
+}  // namespace tex::inline v1

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class RepairNormals : public testing::Test {
+protected:
+    RepairNormals() {
+        scratch_.add_sample("waves.png", "waves.png");
+        EXPECT_EQ(run(scratch_, "bake-normals", {"waves.png", "-o", "marked.png", "--bumpiness", "6"}).code, 0);
+        // ImageMagick does the damage, and leaves out the mark that says what the channels hold.
+        damage("", "clean.png");
+        damage("-set colorspace RGB -colorspace sRGB", "light.png");
+        damage("-separate -swap 0,2 -combine", "bgr.png");
+        clean_ = bytes_of("clean.png");
+    }
+    void damage(const std::string& how, const std::string& name) {
+        const Ran ran = shell(scratch_, "convert marked.png " + how + " -strip -define png:color-type=2 " + name);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+    }
+    Ran go(std::vector<std::string> arguments) {
+        arguments.push_back("--no-sync");
+        return run(scratch_, "repair-normals", arguments);
+    }
+    std::string bytes_of(const std::string& name) {
+        const auto texture = read_texture(scratch_.path(name));
+        if (!texture) return {};
+        const auto& bytes = texture->levels.front().bytes;
+        return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    }
+
+    Scratch scratch_;
+    std::string clean_;
+};
+
+TEST_F(RepairNormals, MendsSeveralFilesAndLeavesCleanOnesAsTheyAre) {
+    const Ran ran = go({"clean.png", "light.png", "bgr.png", "--out-dir", "mended"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(scratch_.read("mended/clean.png"), scratch_.read("clean.png"));
+    EXPECT_EQ(bytes_of("mended/bgr.png"), clean_);
+    const std::string mended = bytes_of("mended/light.png");
+    ASSERT_EQ(mended.size(), clean_.size());
+    int worst = 0;
+    for (std::size_t k = 0; k < mended.size(); ++k)
+        worst =
+            std::max(worst, std::abs(static_cast<unsigned char>(mended[k]) - static_cast<unsigned char>(clean_[k])));
+    EXPECT_LE(worst, 2);  // the curve is steep where it is light
+    EXPECT_NE(ran.out.find("light.png: N302 srgb-encoded: decode with the sRGB curve (safe), "), std::string::npos)
+        << ran.out;
+    EXPECT_NE(ran.out.find("bgr.png: N308 channels-exchanged: exchange R and B (safe), "), std::string::npos);
+    EXPECT_NE(ran.out.find("3 maps: 2 repaired, 1 without a fault that is repaired\n"), std::string::npos) << ran.out;
+}
+
+TEST_F(RepairNormals, APlanIsPrintedAndNothingWritten) {
+    const auto before = scratch_.list();
+    const Ran text = go({"light.png", "clean.png", "--dry-run"});
+    EXPECT_EQ(text.code, 0) << text.err;
+    EXPECT_NE(text.out.find("1 would be repaired"), std::string::npos) << text.out;
+    const Ran ran = go({"light.png", "--out-dir", "mended", "--dry-run", "--json"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(scratch_.list(), before);
+    const auto json = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(json["state"], "repaired");
+    ASSERT_EQ(json["repairs"].size(), 1u);
+    EXPECT_EQ(json["repairs"][0]["id"], "N302");
+    EXPECT_EQ(json["repairs"][0]["repair"], "decode-srgb");
+    EXPECT_EQ(json["repairs"][0]["class"], "safe");
+    EXPECT_GT(json["repairs"][0]["degrees"], 5.0);
+    EXPECT_FALSE(json.contains("output"));
+}
+
+TEST_F(RepairNormals, AMapWithAnErrorThatIsLeftIsNotWritten) {
+    damage("-channel G -negate +channel", "turned.png");
+    const Ran ran = go({"turned.png", "-o", "out.png", "--y", "up"});
+    EXPECT_EQ(ran.code, 1) << ran.err;
+    EXPECT_FALSE(scratch_.has("out.png"));
+    EXPECT_NE(ran.out.find("left: error N401"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("--likely repairs it"), std::string::npos) << ran.out;
+    EXPECT_EQ(go({"turned.png", "-o", "out.png", "--y", "up", "--likely"}).code, 0);
+    EXPECT_EQ(bytes_of("out.png"), clean_);
+    scratch_.add_sample("waves.png", "grey.png");
+    EXPECT_EQ(go({"grey.png", "-o", "grey_out.png"}).code, 1);
+    EXPECT_FALSE(scratch_.has("grey_out.png"));
+    // Rules that are skipped do not count.
+    EXPECT_EQ(go({"turned.png", "-o", "as_it_is.png", "--y", "up", "--skip", "N401"}).code, 0);
+    EXPECT_TRUE(scratch_.has("as_it_is.png"));
+}
+
+TEST_F(RepairNormals, AnInputIsItsOwnOutputOnlyIfItIsNamed) {
+    const std::string clean = scratch_.read("clean.png");
+    EXPECT_EQ(go({"light.png", "--out-dir", "."}).code, 2);
+    EXPECT_EQ(go({"bgr.png", "-o", "bgr.png"}).code, 0);
+    EXPECT_EQ(bytes_of("bgr.png"), clean_);
+    EXPECT_EQ(go({"clean.png", "-o", "clean.png"}).code, 0);
+    EXPECT_EQ(scratch_.read("clean.png"), clean);
+    std::filesystem::create_symlink(scratch_.path("light.png"), scratch_.path("link.png"));
+    EXPECT_EQ(go({"light.png", "-o", "link.png"}).code, 2);
+}
+
+TEST_F(RepairNormals, AnotherEncodingIsThatOfPackNormals) {
+    ASSERT_EQ(run(scratch_, "pack-normals", {"clean.png", "-o", "packed.dds", "--format", "bc5"}).code, 0);
+    ASSERT_EQ(go({"clean.png", "-o", "mended.dds", "--format", "bc5"}).code, 0);
+    EXPECT_EQ(scratch_.read("mended.dds"), scratch_.read("packed.dds"));
+    ASSERT_EQ(go({"light.png", "-o", "light.dds", "--format", "bc5"}).code, 0);
+    const auto made = read_texture(scratch_.path("light.dds"));
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made->format, Format::bc5_unorm);
+}
+
+TEST_F(RepairNormals, ReadsAndWritesStreams) {
+    const Ran ran = run(scratch_, "repair-normals", {"-", "-o", "-", "--container", "png"},
+                        Setting{scratch_.read("bgr.png"), {}, {}});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    scratch_.write("out.png", ran.out);
+    EXPECT_EQ(bytes_of("out.png"), clean_);
+}
+
+TEST_F(RepairNormals, SaysWhatItDoesNotTake) {
+    EXPECT_EQ(go({"clean.png"}).code, 2);
+    EXPECT_EQ(go({"clean.png", "-o", "a.png", "--only", "N999"}).code, 2);
+    EXPECT_EQ(go({"clean.png", "--dry-run", "--depfile", "d"}).code, 2);
+    scratch_.write("model.gltf", R"({"asset": {"version": "2.0"}})");
+    const Ran model = go({"model.gltf", "-o", "out.png"});
+    EXPECT_EQ(model.code, 4);
+    EXPECT_NE(model.err.find("is a model"), std::string::npos) << model.err;
+}
+
+TEST_F(RepairNormals, TheManualHasTheClassOfEveryRule) {
+    std::ifstream page(TEX_BINARY_DIR "/man/check-normals.1");
+    const std::string manual{std::istreambuf_iterator<char>(page), {}};
+    for (const Rule& rule : rules()) {
+        std::string classes;
+        for (const RuleRepair& row : rule_repairs()) {
+            if (row.rule == rule.id)
+                classes += (classes.empty() ? "" : " or ") + std::string(name_of(kRepairClassNames, row.certainty));
+        }
+        if (rule.id == "N112") classes += " or likely";
+        const std::size_t at = manual.find(fmt::format(".It Sy {} Li {} Pq ", rule.id, rule.name));
+        ASSERT_NE(at, std::string::npos) << rule.id;
+        const std::string line = manual.substr(at, manual.find('\n', at) - at);
+        EXPECT_EQ(line.find(", repair ") == std::string::npos, classes.empty()) << line;
+        if (!classes.empty()) {
+            EXPECT_TRUE(line.ends_with(", repair " + classes)) << line;
+        }
+    }
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "reports/repairs.h"
+
+#include <fmt/format.h>
+
+#include "cli/text.h"
+#include "reports/findings.h"
+
+namespace tex::cli {
+namespace {
+
+Json left_json(const FaultLeft& fault) {
+    Json json;
+    json["id"] = fault.finding.rule->id;
+    json["name"] = fault.finding.rule->name;
+    json["severity"] = name_of(kSeverityNames, fault.finding.severity);
+    json["message"] = fault.finding.message;
+    json["class"] = name_of(kRepairClassNames, fault.certainty);
+    return json;
+}
+
+Json step_json(const RepairStep& step) {
+    Json json;
+    json["id"] = step.rule->id;
+    json["name"] = step.rule->name;
+    json["repair"] = name_of(kRepairKindNames, step.kind);
+    json["class"] = name_of(kRepairClassNames, step.certainty);
+    json["text"] = text_of(step);
+    if (step.channel >= 0) {
+        std::string channels(1, "RGBA"[step.channel]);
+        if (step.other >= 0) channels += "RGBA"[step.other];
+        json["channels"] = std::move(channels);
+    }
+    if (step.part) json["part"] = {step.part->x, step.part->y, step.part->width, step.part->height};
+    json["degrees"] = static_cast<float>(step.degrees);
+    return json;
+}
+
+}  // namespace
+
+std::string repairs_text(const std::string& name, const Repaired& repaired) {
+    std::string text;
+    for (const RepairStep& step : repaired.steps) {
+        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees\n", printable(name), step.rule->id, step.rule->name,
+                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees);
+    }
+    for (const FaultLeft& fault : repaired.left) {
+        const Finding& finding = fault.finding;
+        if (finding.severity == Severity::note) continue;
+        std::string statement = statement_of(finding);
+        statement.pop_back();
+        text += fmt::format("{}: left: {} {} {}: {}{}\n", printable(name), name_of(kSeverityNames, finding.severity),
+                            finding.rule->id, finding.rule->name, printable(statement),
+                            fault.certainty == RepairClass::likely ? "; --likely repairs it" : "");
+    }
+    return text;
+}
+
+Json repairs_json(const Repaired& repaired) {
+    Json json;
+    json["state"] = repaired.has_errors() ? "refused" : repaired.steps.empty() ? "whole" : "repaired";
+    json["repairs"] = Json::array();
+    for (const RepairStep& step : repaired.steps) json["repairs"].push_back(step_json(step));
+    json["left"] = Json::array();
+    for (const FaultLeft& fault : repaired.left) json["left"].push_back(left_json(fault));
+    return json;
+}
+
+void RepairTotals::add(const Repaired& of) {
+    ++maps;
+    ++(of.has_errors() ? refused : of.steps.empty() ? whole : repaired);
+}
+
+std::string RepairTotals::text(bool is_dry_run) const {
+    std::string text = fmt::format("{} {}: {} {}repaired, {} without a fault that is repaired", maps,
+                                   maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "", whole);
+    if (refused > 0)
+        text += fmt::format(", {} {}not written, because an error is left", refused, is_dry_run ? "would be " : "");
+    return text;
+}
+
+}  // namespace tex::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// repairs.h: what repair() did, as text and as JSON.
+
+#pragma once
+
+#include <string>
+
+#include <tex/repair.h>
+
+#include "cli/json.h"
+
+namespace tex::cli {
+
+// One line for each step and for each error and warning that is left: "a.png: N302 srgb-encoded: decode with the sRGB
+// curve (safe), 12.3 degrees". Empty for a map without either.
+[[nodiscard]] std::string repairs_text(const std::string& name, const Repaired& repaired);
+
+// The same, as --json prints it, with notes, too.
+[[nodiscard]] Json repairs_json(const Repaired& repaired);
+
+// Counts of maps, for the last line.
+struct RepairTotals {
+    int maps = 0, repaired = 0, refused = 0, whole = 0;
+
+    void add(const Repaired& of);
+    [[nodiscard]] std::string text(bool is_dry_run) const;
+};
+
+}  // namespace tex::cli
