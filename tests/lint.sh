@@ -137,6 +137,12 @@ mapfile -t written < <(select_files '\.(cpp|h|sh|md|in|mdoc|txt|json)$|^\.ci/run
     grep -v '^tests/lint\.sh$\|^man/.*\.md$')
 ban '\b(TODO|FIXME|XXX)\b' 'unfinished work' "${written[@]}"
 ban '[[:blank:]]+$' 'trailing blanks' "${written[@]}"
+# A comment names its subject in its first words.
+headless=$(awk 'FNR == 1 { before = "" }
+    { text = $0; sub(/^[[:blank:]]+/, "", text) }
+    text ~ /^\/\/ (That|Those|Of|As|The same)[ ,]/ && before !~ /^\/\// { print FILENAME ":" FNR ": " text }
+    { before = text }' "${cplusplus[@]}")
+[ -z "$headless" ] || complain "comments that begin with That, Those, Of, As or The same"$'\n'"$headless"
 mapfile -t tests < <(select_files '^tests/.*\.(cpp|h)$' | grep -v '^tests/scratch\.h$')
 ban '\bTempDir\(|temp_directory_path|mkdtemp' 'a file of a test lies outside a Scratch folder' "${tests[@]}"
 ban $'\t' 'tabs' "${written[@]}"

@@ -58,7 +58,7 @@ protected:
         open("page.html");
         wait_for_light();
     }
-    // Of all pixels, outlines included. There the GPU has 4 samples for a pixel and preview-normals 16, so some differ.
+    // All pixels count, outlines too. There the GPU has 4 samples for a pixel and preview-normals 16, so some differ.
     void expect_picture_of_command(const std::string& what) {
         const Agreement found = compare_with_command(what);
         EXPECT_GE(found.share, 0.99) << what << ": " << found.command;

@@ -52,7 +52,7 @@ protected:
 };
 
 TEST_F(TransferPage, DrawsTheSameMeshTwiceInTheSameWay) {
-    // Of a mesh from itself, the map is flat: both pictures are that of the mesh alone.
+    // A mesh makes a flat map of itself: both pictures are that of the mesh alone.
     open_report("crate_low.glb crate_low.glb --extent 256");
     EXPECT_LT(differing(canvas_of(".stage.mesh"), canvas_of(".stage.beside")), 0.002);
     point_at(0.3, 0.6);

@@ -59,7 +59,7 @@ TEST_F(Advice, NearlyFlatBakesNameTheStrengthThatUsesTheRange) {
     }
     EXPECT_EQ(done("bake-normals", {"bricks.png", "-o", "none.png", "--bumpiness", "0"}).err, "") << "as asked for";
 
-    // The same figure, without asking twice; and 45 degrees is what it promises.
+    // One figure, without asking twice; and 45 degrees is what it promises.
     const Ran automatic =
         done("bake-normals", {"bricks.png", "-o", "auto.exr", "--bumpiness", "auto", "--format", "float"});
     ASSERT_TRUE(automatic.out.starts_with("bricks.png: --bumpiness auto is ")) << automatic.out;

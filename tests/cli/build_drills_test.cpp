@@ -135,7 +135,7 @@ TEST_F(BuildDrills, LevelsCanHaveTheirOwnFiles) {
     EXPECT_TRUE(outputs() == first);
     ASSERT_EQ(build().code, 0);
     EXPECT_EQ(count("current"), 1u);
-    // The same settings with one file for all levels are another output, and neither takes the other's entries.
+    // Equal settings with one file for all levels are another output, and neither takes the other's entries.
     scratch_.write(
         "normals.toml",
         "version = 1\n[[rule]]\nmatch = \"art/*_h.png\"\nname = \"out/{stem}.png\"\nsteps = [ { bake = {} } ]\n");

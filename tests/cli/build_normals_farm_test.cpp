@@ -158,7 +158,7 @@ TEST_F(BuildNormalsFarm, MergeFindsContradictionsAndDamage) {
     plan_and_run(2);
     ASSERT_EQ(merge().code, 0);
     std::string report = scratch_.read("r/1.jsonl");
-    // The same texture in another report, with another digest.
+    // A texture in another report, with another digest.
     const std::size_t at = report.find("\"sha256\":\"") + 10;
     report[at] = report[at] == '0' ? '1' : '0';
     scratch_.write("r/other.jsonl", report);

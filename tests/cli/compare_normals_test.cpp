@@ -53,7 +53,7 @@ TEST_F(CompareNormals, ShowsProgressWhereItIsAskedFor) {
     EXPECT_EQ(with({"--progress", "always", "--quiet"}).err, "");
 }
 
-// As in all other commands, the layout of a file with four channels is guessed from its texels.
+// Here, too, the layout of a file with four channels is guessed from its texels.
 TEST_F(CompareNormals, LayoutsThatFilesDoNotNameAreToldFromTheTexels) {
     make("ag.dds", {"--format", "ag8"});
     make("ag.png", {"--format", "ag8"});

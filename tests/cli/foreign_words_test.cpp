@@ -68,7 +68,7 @@ TEST(ForeignOptions, EveryAnswerNamesOptionsThatTheCommandHas) {
         EXPECT_TRUE(row.answer.empty() || used.contains(row.answer)) << "no command gives it: " << row.answer;
 }
 
-// As other tools call them: no answer may be a guess from the spelling.
+// Words of other tools: no answer may be a guess from the spelling.
 TEST(ForeignOptions, HaveNoWrongNeighbours) {
     const char* const kTyped[] = {"--size",
                                   "--resize",

@@ -106,7 +106,7 @@ TEST_F(InputKind, StepsBeforeTheLastRefuseThem) {
     EXPECT_FALSE(scratch_.has("orm.dds"));
 }
 
-// Of the outputs, nothing is demanded: only the input is wrong.
+// Nothing is demanded of the outputs: only the input is wrong.
 TEST_F(InputKind, ChecksOfInputsNameTheSourceThePlaceAndTheFix) {
     scratch_.write("normals.toml",
                    "version = 1\n\n[[rule]]\nmatch = \"round.png\"\nname = \"round.dds\"\n"

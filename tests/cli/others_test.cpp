@@ -182,7 +182,7 @@ TEST_F(Others, SixteenBitsStaySixteen) {
 
 // Other programs take apart what we have put together, and we what they have: alpha is unassociated.
 TEST_F(Others, OtherProgramsSeeTheSameAlpha) {
-    // Of a file, a picture of its alpha and one of its colours.
+    // A file with a picture of its alpha and one of its colours.
     const struct {
         const char* name;
         const char* script;

@@ -300,7 +300,7 @@ TEST_F(PreviewNormals, TakesHeightsFromTheNormalsIfThereIsNoHeightMap) {
     EXPECT_LT(
         largest_difference(picture({"--show", "height"}), picture({"--show", "height", "--height", "height.png"})),
         3.0f / 255.0f);
-    // The same heights from a file, from 0 to 1.
+    // Heights from a file, from 0 to 1.
     const Ran ran =
         run(scratch_, "integrate-normals", {"n.exr", "-o", "h.exr", "--heights", "fit", "--json", "--no-sync"});
     ASSERT_EQ(ran.code, 0) << ran.err;

@@ -56,7 +56,7 @@ private:
 Ran run(const Scratch& scratch, const std::string& program, const std::vector<std::string>& arguments,
         const Setting& setting = {});
 
-// The same through a shell; the commands of the build are in its PATH.
+// Runs a line through a shell; the commands of the build are in its PATH.
 Ran shell(const Scratch& scratch, const std::string& script);
 
 [[nodiscard]] bool is_installed(const std::string& program);

@@ -50,7 +50,7 @@ TEST_F(Streams, StandardOutputIsTheSameByAllItsNames) {
     }
 }
 
-// As with names (Files.AnOutputThatIsAnInputIsRefused): a file that the shell opened is still the same file.
+// What holds for names (Files.AnOutputThatIsAnInputIsRefused): a file that the shell opened is still the same file.
 TEST_F(Streams, TheFileBehindAStreamIsNoInputAndOutputAtOnce) {
     const std::string before = scratch_.read("a.png");
     for (const std::string script :

@@ -94,7 +94,7 @@ TEST_F(TransferPage, IsNoOtherFile) {
 }
 
 TEST_F(TransferPage, TakesColoursOfVertices) {
-    // The same mesh in three types of file. Assimp makes the FBX.
+    // One mesh in three types of file. Assimp makes the FBX.
     const std::string corners[4] = {"0 0 0.1", "2 0 0.1", "2 2 0.1", "0 2 0.1"};
     const int colors[4][3] = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {255, 255, 0}};
     std::string obj,

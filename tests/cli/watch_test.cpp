@@ -326,7 +326,7 @@ steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", extent = "32", 
     EXPECT_TRUE(scratch_.read("out/h.1002.exr") == watched);
 }
 
-// As every run with --json, it ends with a line that says so.
+// Every run with --json ends with a line that says so.
 TEST_F(BuildNormalsWatch, JsonEndsWithALineOfTheInterruption) {
     Background builder(scratch_, "build-normals", {"--watch", "--no-sync", "--json"});
     ASSERT_TRUE(prints(builder, "\"interrupted\":false"));

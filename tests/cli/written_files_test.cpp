@@ -178,7 +178,7 @@ TEST_F(WrittenFiles, StayBelowOutDir) {
     const Ran ran = build();
     EXPECT_EQ(ran.code, 2);
     EXPECT_NE(ran.err.find("leads out of the folder of the manifest"), std::string::npos) << ran.err;
-    // As everywhere, {dir} and {stem} are those of the rule's input, whatever steps are before.
+    // Here, too, {dir} and {stem} are those of the rule's input, whatever steps are before.
     write_rule(
         "match = \"art/*.png\"\nname = \"{dir}/{stem}.dds\"\nsteps = [ { bake = {} }, { mip = { roughness-out = "
         "\"{dir}/{stem}_{format}.ktx2\" } } ]");

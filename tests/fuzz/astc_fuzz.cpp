@@ -9,7 +9,7 @@
 #include "formats/astc/astc_file.h"
 #include "fuzz/whole_texture.h"
 
-// Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
+// A function of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 // Half of the mutations keep a header that is believed, with an extent that the file can hold.

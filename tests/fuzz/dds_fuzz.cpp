@@ -81,7 +81,7 @@ void change_a_field(std::uint8_t* data, std::size_t size, std::minstd_rand& rand
 
 }  // namespace
 
-// Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
+// A function of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {

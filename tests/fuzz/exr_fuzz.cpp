@@ -23,7 +23,7 @@
 #include "formats/size_limits.h"
 #include "reference/exr_file.h"
 
-// Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
+// A function of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 namespace {

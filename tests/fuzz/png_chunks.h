@@ -96,7 +96,7 @@ inline std::vector<std::size_t> png_rows(const PngHeader& header, std::size_t mo
     return begins;
 }
 
-// As many bytes as zlib makes of `packed`, however it ends; not more than `most`.
+// Inflates as many bytes as zlib makes of `packed`, however it ends; not more than `most`.
 inline PngBytes inflated(const PngBytes& packed, std::size_t most) {
     PngBytes bytes(most);
     z_stream stream{};

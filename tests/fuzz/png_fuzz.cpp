@@ -39,7 +39,7 @@ void compare_rows(const tex::Image& image, const tex::Image& again) {
     }
 }
 
-// As commands read it that hold some rows at a time: each must be what the whole picture has there.
+// Commands read some rows at a time: each must be what the whole picture has there.
 void check_rows(tex::InputFile& file, const tex::ReadOptions& options, const tex::Image& image) {
     const auto rows = tex::open_png(file, options);
     if (!rows) std::abort();

@@ -15,7 +15,7 @@
 
 #include "fuzz/png_chunks.h"
 
-// Of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
+// A function of libFuzzer; programs that replay the corpus do not have it, and do not mutate.
 extern "C" [[gnu::weak]] std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 inline constexpr std::size_t kMostTexelBytes = 1 << 14;
@@ -114,7 +114,7 @@ inline void change_chunks(std::vector<PngChunk>& chunks, Random& random) {
     }
 }
 
-// As LLVMFuzzerCustomMutator().
+// Called by LLVMFuzzerCustomMutator().
 inline std::size_t mutate_png(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
     Random random(seed);
     if (below(4, random) == 0) return LLVMFuzzerMutate(data, size, most);

@@ -21,7 +21,7 @@ protected:
         EXPECT_EQ(ran.code, 0) << script << "\n" << ran.out << ran.err;
         return ran.out;
     }
-    // The same normals in an 8-bit picture and with signed floats.
+    // Equal normals in an 8-bit picture and with signed floats.
     void add_maps() {
         scratch_.add_sample("waves.png", "waves.png");
         go("bake-normals waves.png -o n.png --bumpiness 12 --no-sync && "

@@ -266,7 +266,7 @@ TEST_F(GltfValidator, AgreesOnModelsOfOthers) {
     std::printf("%zu models: %d valid, %d refused by both\n", models.size(), valid_, refused_);
 }
 
-// Of odd_models.py, but for a byte order mark, which glTF forbids and engines read.
+// The models of odd_models.py, but for a byte order mark, which glTF forbids and engines read.
 TEST_F(GltfValidator, AgreesOnOddModels) {
     ASSERT_TRUE(shell("python3 '" + (kSource / "tests/peers/odd_models.py").string() + "' '" + scratch_.path() + "'"));
     std::vector<fs::path> models;

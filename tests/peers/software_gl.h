@@ -86,7 +86,7 @@ GLuint make_program(const char* vertex_shader, const char* fragment_shader);
 using Rgba = std::array<float, 4>;
 GLuint upload_map(const tex::MipChain& map, const std::function<Rgba(float x, float y, float z)>& texel);
 
-// The same of one plane, in the red channel.
+// Draws one plane, in the red channel.
 GLuint upload_plane(const tex::Plane<float>& plane);
 
 // Draws `vertices` of a triangle strip with the program, whose uniforms set_uniforms(place) sets, over a cleared
@@ -96,7 +96,7 @@ using UniformLocation = std::function<GLint(const char* uniform)>;
 std::vector<float> draw(GLuint program, tex::Extent target, int vertices,
                         const std::function<void(const UniformLocation&)>& set_uniforms);
 
-// The same of separate triangles: nearer ones hide others, and those whose corners are clockwise are not drawn.
+// Draws separate triangles: nearer ones hide others, and those whose corners are clockwise are not drawn.
 std::vector<float> draw_triangles(GLuint program, tex::Extent target, int vertices,
                                   const std::function<void(const UniformLocation&)>& set_uniforms);
 

@@ -105,7 +105,7 @@ std::vector<float> draw_wikibook_plane(const GlScene& scene) {
     gl.ActiveTexture(GL_TEXTURE1);
     const GLuint height = scene.height != nullptr ? upload_plane(*scene.height) : 0;
     gl.ActiveTexture(GL_TEXTURE0);
-    // As DXT5nm decodes: x in alpha, y in green.
+    // What DXT5nm decodes to: x in alpha, y in green.
     const GLuint map = upload_map(*scene.map, [](float x, float y, float) {
         return Rgba{1.0f, (y + 1.0f) / 2.0f, 1.0f, (x + 1.0f) / 2.0f};
     });

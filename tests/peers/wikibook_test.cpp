@@ -83,7 +83,7 @@ struct View {
     float parallax = 0.0f;
 };
 
-// The same scene for OpenGL; the camera is placed by the corners of the plane.
+// The scene for OpenGL; the camera is placed by the corners of the plane.
 peers::GlScene gl_scene(const View& view, const tex::PreviewOptions& options) {
     const double yaw = view.camera.yaw * kDegree, pitch = view.camera.pitch * kDegree;
     const double toward[3] = {std::sin(yaw) * std::cos(pitch), std::sin(pitch), std::cos(yaw) * std::cos(pitch)};

@@ -35,7 +35,7 @@ private:
     }
 };
 
-// The same values in double.
+// These values in double.
 Grid<double> grid_of(const Plane<float>& plane);
 Grid<Vector> grid_of(const NormalMap& map);
 

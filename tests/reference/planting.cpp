@@ -169,7 +169,7 @@ std::vector<Planted> plant_all(const NormalMap& whole, std::optional<YAxis> y, b
     add("banding of 8-bit heights", "N305", texture_of(codes_of(from_heights(heights, kGreyLevels))), baked).visible =
         shows(kGreyLevels);
     if (!shows(kGreyLevels)) {
-        // The same heights in the largest part of the 8 bits whose steps show.
+        // These heights in the largest part of the 8 bits whose steps show.
         int levels = kGreyLevels / 2;
         while (!shows(levels) && levels > kFewestLevels) levels /= 2;
         add("banding, part of 8 bits", "N305", texture_of(codes_of(from_heights(heights, levels))), baked).visible =

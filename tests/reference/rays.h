@@ -24,7 +24,7 @@ struct PlainHit {
 PlainHit first_hit(const std::vector<PlainTriangle>& triangles, const Point& origin, const Point& direction,
                    double length, int facing);
 
-// The same by another way: the signs of the volumes between the ray and the edges in long double (Pluecker
+// Finds it by another way: the signs of the volumes between the ray and the edges in long double (Pluecker
 // coordinates). Only triangles count that the ray meets by more than `margin` of their size within all edges.
 PlainHit clear_hit(const std::vector<PlainTriangle>& triangles, const Point& origin, const Point& direction,
                    double length, int facing, double margin);

@@ -338,7 +338,7 @@ TEST(Check, TexturesOfOneTexelAreChecked) {
     EXPECT_EQ(ids(reference::texture_of(reference::codes_of(bumps({3, 2})))), Ids{});
 }
 
-// As in unpack(): a map that leans to one side has no negative component, but it is signed.
+// What unpack() does: a map that leans to one side has no negative component, but it is signed.
 TEST(Check, FloatsWithoutANegativeValueAreReadByTheirLength) {
     for (const Extent extent : {Extent{1, 1}, Extent{64, 64}}) {
         NormalMap map = bumps(extent);

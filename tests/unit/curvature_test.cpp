@@ -97,7 +97,7 @@ TEST(Curvature, SphereSaddleAndWavesAreWithinOnePercent) {
 }
 
 TEST(Curvature, ConvergesWithSecondOrder) {
-    // The same surface on half the texels: the error is divided by four; log2 of the ratio is the order.
+    // One surface on half the texels: the error is divided by four; log2 of the ratio is the order.
     for (const CurvatureKind kind : {CurvatureKind::mean, CurvatureKind::divergence}) {
         const double coarse = error_of({33, 33}, waves(4.0, 0.2), kind);
         const double fine = error_of({65, 65}, waves(8.0, 0.1), kind);

@@ -68,7 +68,7 @@ TEST(ExrRows, AnyRowsAreThoseOfTheWholePicture) {
     }
 }
 
-// The same file must not be whole for one thread and damaged for two.
+// One file must not be whole for one thread and damaged for two.
 TEST(ExrRows, ChunksAreWhereTheTableSaysInWhateverOrderTheyAreRead) {
     for (const Imf::Compression compression :
          {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION}) {

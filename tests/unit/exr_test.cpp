@@ -181,7 +181,7 @@ Bytes parts_file(const std::vector<std::string>& names, const std::vector<std::v
     return bytes;
 }
 
-// As Nuke and Blender write them: the name of the part is that of the layer, or the channels have it too.
+// Nuke and Blender write them so: the name of the part is that of the layer, or the channels have it too.
 TEST(Exr, LayersMayBeParts) {
     for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::NO_COMPRESSION, Imf::PIZ_COMPRESSION}) {
         for (const std::string prefix : {"", "normal."}) {

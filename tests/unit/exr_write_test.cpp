@@ -139,7 +139,7 @@ std::vector<Bytes> read_by_openexr(const Bytes& bytes, const Texture& like) {
     return levels;
 }
 
-// The same version, attributes and number of chunks.
+// Equal version, attributes and number of chunks.
 void expect_same_head(const Bytes& ours, const Bytes& theirs) {
     const auto parsed = [](const Bytes& bytes) {
         return reference::parse_exr({reinterpret_cast<const char*>(bytes.data()), bytes.size()}).value();

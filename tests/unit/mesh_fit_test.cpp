@@ -95,7 +95,7 @@ TEST(MeshFit, SaysHowMuchOfTheBackgroundIsOnTheMesh) {
 TEST(MeshFit, SeamsCountTheScaleOfTheMaterial) {
     const SelectedPart selected = selected_cube();
     const NormalMap surface = wavy_surface(selected.part, {256, 256}, 1.0);
-    // Of the map, flattened, in a material with this scale.
+    // The mean for the map, flattened, in a material with this scale.
     const auto mean = [&](float flattened, double by) {
         auto map = to_tangent_space(surface, {selected.part, selected.tangents});
         EXPECT_TRUE(map);

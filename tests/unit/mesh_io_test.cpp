@@ -293,7 +293,7 @@ TEST_F(MeshIo, RefusesNumbersThatLeaveTheirPlaceWithOneSentence) {
                    place + "POSITION: an accessor does not exist");
 }
 
-// As Khronos' validator judges them: warnings and valid files are read, errors are refused.
+// Khronos' validator judges them so: warnings and valid files are read, errors are refused.
 TEST_F(MeshIo, ReadsWhatIsUnusualAndRefusesWhatIsWrong) {
     GltfMaker maker = square();
     const auto skipped = read(maker.glb(R"({"attributes":{"NORMAL":0}},)" + kPrimitive));

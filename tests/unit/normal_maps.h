@@ -27,7 +27,7 @@ inline NormalMap wavy_map(Extent extent, double phase = 0.0) {
     return map;
 }
 
-// The same vector everywhere, of any length.
+// One vector everywhere, of any length.
 inline NormalMap uniform_map(Extent extent, float x, float y, float z) {
     NormalMap map;
     map.x = Plane<float>(extent, x);

@@ -157,7 +157,7 @@ protected:
         const auto done = pack_file(input, path("out"), container, options);
         return done ? Result<std::string>(names(done->source)) : done.error();
     }
-    // The same in memory.
+    // The verbs in memory.
     Bytes memory(Verb verb, const std::string& input, Encoding encoding, Container container, Beside beside) {
         MipChain chain;
         if (verb == Verb::bake) {

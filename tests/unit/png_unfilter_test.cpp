@@ -16,7 +16,7 @@ namespace {
 
 using Row = std::vector<std::uint8_t>;
 
-// As the specification states it, one byte after the other.
+// What the specification states, one byte after the other.
 Row unfiltered(const Row& row, const Row& above, std::size_t step, int filter) {
     Row out;
     for (std::size_t i = 0; i < row.size(); ++i) {

@@ -92,7 +92,7 @@ TEST(Preview, LightFromTheUpperLeftRaisesABump) {
 }
 
 TEST(Preview, MirroredUvsLightCorrectly) {
-    // The same surface twice: unchanged, and with a mirrored texture and reversed UVs.
+    // One surface twice: unchanged, and with a mirrored texture and reversed UVs.
     const MipChain map = random_map({32, 16}, 3);
     MipChain mirrored = constant({32, 16}, 0.0f, 0.0f, 1.0f);
     for (int j = 0; j < 16; ++j) {

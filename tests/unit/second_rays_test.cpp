@@ -310,7 +310,7 @@ TEST(SecondRays, GiveTheSameBytesForEveryNumberOfThreadsAndInstructionSet) {
     });
 }
 
-// Of triangles that a ray meets from behind, the side counts from which it came.
+// For triangles that a ray meets from behind, the side counts from which it came.
 TEST(SecondRays, OfBackFacesStartWhereTheRayCameFrom) {
     const MeshPart low = flat_square({16, 16});
     std::vector<MeshPart> high = only(inside_out(lifted(low, -0.25f)));

@@ -59,7 +59,7 @@ std::set<std::string, std::less<>> rules_met(const Texture& texture) {
     return met;
 }
 
-// The same texels, declared with the format of another texture.
+// Equal texels, declared with the format of another texture.
 Texture declared_as(Texture texture, const Texture& other) {
     texture.format = other.format;
     return texture;

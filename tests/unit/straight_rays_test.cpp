@@ -108,7 +108,7 @@ MeshPart bevelled_cube(float bevel) {
             for (std::uint32_t d = c + 1; d < 24; ++d) {
                 if (d / 4 != c / 4 && octant(d) == octant(a)) add(a, c, d);
             }
-            // The same two faces at the other end of the edge.
+            // These two faces at the other end of the edge.
             for (std::uint32_t e = a + 1; e < 24; ++e) {
                 if (e / 4 != a / 4) continue;
                 for (std::uint32_t f = 0; f < 24; ++f) {

@@ -47,7 +47,7 @@ Bytes level_of(const Bytes& file, std::size_t k) {
     return {first, first + static_cast<std::ptrdiff_t>(load_u64(entry + 8))};
 }
 
-// The same file with other levels.
+// The file with other levels.
 Bytes with_levels(Bytes file, const std::vector<Bytes>& levels, std::uint32_t scheme) {
     for (std::size_t k = 0; k < levels.size(); ++k) {
         set(file, kIndexAt + k * kEntry, file.size(), 8);

@@ -45,7 +45,7 @@ std::string layout(Extent extent, int rows, IsRgb&& is_rgb) {
     return found;
 }
 
-// Of a map of 2^21 texels, every second column of every second row is examined: from the first one.
+// In a map of 2^21 texels, every second column of every second row is examined: from the first one.
 TEST(SwizzleEvidence, LooksAtEverySecondRowAndColumnOfALargeMap) {
     const Extent large{2048, 1024};
     EXPECT_EQ(layout(large, 64, [](int i, int j) { return i % 2 == 0 && j % 2 == 0; }), "rgb");

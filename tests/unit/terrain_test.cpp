@@ -98,7 +98,7 @@ protected:
         return options;
     }
 
-    // As a command would find them.
+    // What a command would find.
     [[nodiscard]] TerrainTile tile_at(const Grid& grid, int x, int y, Wrap wrap) const {
         TerrainTile tile;
         tile.shared_border = grid.shared;

@@ -290,7 +290,7 @@ TEST(Unpack, ReadsPicturesByTheNamesOfTheirPlanes) {
     expect_near(first(half), {-0.57735f, -0.57735f, 0.57735f}, 1e-5f);
 }
 
-// The same bytes on every target, with every number of threads and with every kind of row end.
+// Equal bytes on every target, with every number of threads and with every kind of row end.
 TEST(Unpack, GivesTheSameBytesEverywhere) {
     for (const auto& row : kFormatNames) {
         if (format_info(row.value).channels < 2) continue;

@@ -88,9 +88,9 @@ public:
         task.origin = origin;
         return task_for(std::move(task));
     }
-    // The same of a task that has more than these.
+    // The task, made of one that has more than these.
     [[nodiscard]] Task task_for(Task task) const;
-    // The same for a tile of a terrain, with the tiles around it: `pattern` names them (grid.h). Throws also what
+    // The task for a tile of a terrain, with the tiles around it: `pattern` names them (grid.h). Throws also what
     // grid_files() throws; its errors leave the tile alone. Precondition: files.tiles.
     [[nodiscard]] Task task_for_tile(const std::string& input, const std::string& output,
                                      const std::string& pattern) const;
@@ -100,9 +100,9 @@ public:
     [[nodiscard]] std::vector<int> tiles_of(const std::string& input) const;
     // The output options of such a task. Throws UsageError if --for names several engines.
     [[nodiscard]] OutputOptions output_for_task() const;
-    // As check(), for such a task.
+    // Does what check() does, for such a task.
     [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
-    // As process(), for a job of such a task.
+    // Does what process() does, for a job of such a task.
     [[nodiscard]] Result<void> process_task(Job& job) { return process(job); }
     // Whether a manifest can name it. The files of a step are the same for all of its inputs.
     [[nodiscard]] virtual bool can_be_step() const { return true; }
@@ -119,7 +119,7 @@ public:
     void note_output(Job& job, const OutputFacts& facts, const std::string& about = {});
     // The error with the option that avoids it, if there is one.
     [[nodiscard]] virtual Error with_remedy(const Error& error) const { return error; }
-    // As finish().
+    // Does what finish() does.
     void finish_steps(Console& console) {
         std::ignore = finish(console);
         repeated_.print(console);

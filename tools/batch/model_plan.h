@@ -13,7 +13,7 @@ namespace tex::cli {
 // Whether the outputs that the options name are models.
 [[nodiscard]] bool writes_models(const FileOptions& files);
 
-// As plan_outputs(), of outputs that are models. Throws UsageError also for options of which models have nothing.
+// plan_outputs(), where outputs are models. Throws UsageError also for options that mean nothing for models.
 [[nodiscard]] std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOptions& files,
                                             const OutputOptions& output, const OutputRules& rules,
                                             const Command& command, const MeshReadOptions& options);

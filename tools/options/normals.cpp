@@ -57,7 +57,7 @@ std::string_view alpha_encoding(const SourceInfo& input, Container container) {
     for (const auto& row : kEncodingNames) {
         if (!can_hold(row.value).alpha || !can_hold(container, row.value)) continue;
         const FormatInfo format = format_info(encoding_info(row.value).format);
-        // As many bits, or a few more; else the most.
+        // Takes as many bits, or a few more; else the most.
         const int worth = (format.bits >= info.bits ? 1000 - format.bits : format.bits) +
                           (format.bits == info.bits && format.sample == info.sample ? 1 : 0);
         if (worth <= best) continue;

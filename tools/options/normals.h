@@ -88,7 +88,7 @@ public:
     // writes a map, and what the input holds beside its normals goes along.
     void add(Command& command, bool with_keep_length = true, bool keeps_others = true);
 
-    // The same, as options of the library.
+    // What was given, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
 
     // What the file is, if the texels that were read raise a doubt about it.
@@ -104,7 +104,7 @@ public:
     [[nodiscard]] Result<Source> read(Job& job, const std::string& path, const Execution& execution,
                                       const Reading& reading = {});
 
-    // The same for the job's input. Calls report_input(), too.
+    // Reads the job's input. Calls report_input(), too.
     [[nodiscard]] Result<Source> read(Job& job, double until, bool base_only);
 
     // Prints a warning for each layout that was guessed from texels, with the first of its files.

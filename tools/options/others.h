@@ -45,7 +45,7 @@ public:
     // What of the map that is read goes along.
     void apply(UnpackOptions& unpack) const;
     void apply(MipOptions& mip) const;
-    // Of the map's data, what outputs that hold this do not lose, or were told to.
+    // What outputs that hold this do not lose of the map's data, or were told to lose.
     [[nodiscard]] OtherPlanes accounted_for(OtherPlanes held) const;
     // Whether z is stored.
     [[nodiscard]] bool stores_z() const { return blue_.from == Choice::From::nothing; }

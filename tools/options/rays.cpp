@@ -325,7 +325,7 @@ Result<void> TransferMaps::write_heights(Job& job, TransferredMaps& maps) const 
     return write_lengths(job, heights_, std::move(maps.heights), lowest, highest, job.report["heights"]);
 }
 
-// As they are in files of floats, otherwise from 0 to 1.
+// Values stay as they are in files of floats, otherwise go from 0 to 1.
 Result<void> TransferMaps::write_lengths(Job& job, const MapOutput& output, Plane<float> lengths, float lowest,
                                          float highest, Json& report) const {
     if (!output.holds_floats(job)) {

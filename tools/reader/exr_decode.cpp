@@ -135,7 +135,7 @@ void copy_lines(Imf::MultiPartInputFile& file, int part, Sink& sink) {
     }
 }
 
-// Of ripmaps, only the largest level is copied.
+// A ripmap has only its largest level copied.
 void copy_tiles(Imf::MultiPartInputFile& file, int part, Sink& sink) {
     Imf::TiledInputPart from(file, part);
     Imf::Header header = plain_header(from.header());

@@ -43,7 +43,7 @@ int close_tiff(thandle_t handle) {
 
 toff_t size_of_tiff(thandle_t handle) { return reading_of(handle).job.size(); }
 
-// The same for OpenEXR.
+// A stream of OpenEXR.
 class Stream final : public Imf::IStream {
 public:
     explicit Stream(const Here& job) : Imf::IStream(""), job_(job), size_(job.size()) {}

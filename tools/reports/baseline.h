@@ -31,7 +31,7 @@ public:
 
     // Errors: io, bad_data.
     [[nodiscard]] static Result<Baseline> read(const std::string& path);
-    // The same from memory. `path` appears in messages. Errors: bad_data.
+    // Reads from memory. `path` appears in messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
 
     // Adds the findings of the report to the known ones, unless the file could not be read. `content` is that of its

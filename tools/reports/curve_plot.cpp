@@ -11,7 +11,7 @@
 namespace tex::cli {
 namespace {
 
-// Of a panel, in units of the picture.
+// The size of a panel, in units of the picture.
 constexpr double kPanelWidth = 220.0;
 constexpr double kPanelHeight = 200.0;
 constexpr double kPanelTop = 48.0;

@@ -117,7 +117,7 @@ bool is_clear(std::string_view id, const CheckReport& report, const Requirements
     return !is_about_mirrors(id) || report.y.y.has_value();
 }
 
-// The same encoding with alpha.
+// An encoding with its alpha.
 std::optional<Encoding> with_alpha(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
     const FormatInfo info = format_info(format);

@@ -17,7 +17,7 @@ std::string_view command_of(Severity severity) {
     return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "notice";
 }
 
-// As GitHub's toolkit escapes messages (escapeData) and properties (escapeProperty).
+// Escapes messages (escapeData) and properties (escapeProperty) as GitHub's toolkit does.
 std::string escaped(std::string_view text, std::string_view special) {
     std::string result;
     for (const char c : text) {

@@ -49,7 +49,7 @@ inline constexpr std::size_t kHtmlVertexSize = 28;
 // Precondition: preview() accepts the space.
 [[nodiscard]] std::shared_ptr<const HtmlMesh> html_mesh(const TangentSpace& space, std::string arguments);
 
-// The same of a mesh that the page draws as it lies beside another one: both have the same scale.
+// The mesh for a page that draws it as it lies beside another one: both have the same scale.
 [[nodiscard]] std::shared_ptr<const HtmlMesh> html_mesh_beside(const TangentSpace& space, const MeshPart& other);
 
 }  // namespace tex::cli

@@ -48,7 +48,7 @@ public:
     // Adds a rule that an entry names. Each such rule is explained once, at the end of the page.
     void explain(const Rule& rule);
 
-    // Of the meshes in the page.
+    // The numbers of the meshes in the page.
     using MeshNumbers = std::map<const HtmlMesh*, std::size_t>;
 
     // The page. `summary` is its first sentence.

@@ -38,7 +38,7 @@ Point area_of(const MeshPart& part, std::size_t triangle) {
 
 double length_of(const Point& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-// Of unit length, if it has any.
+// The vector with length 1, if it has any length.
 Point unit_of(Point v) {
     const double length = length_of(v);
     if (!(length > 1e-30)) return v;
@@ -118,7 +118,7 @@ public:
     }
     [[nodiscard]] std::size_t triangles() const { return corners_.size() / 3; }
 
-    // Of the first triangles.
+    // Makes a part of the first triangles.
     [[nodiscard]] MeshPart finish(std::size_t most) const {
         MeshPart part;
         std::vector<std::int32_t> vertices(6 * cells_of_.size(), kNoVertex);

@@ -20,7 +20,7 @@ namespace tex::cli {
 // Preconditions: every part passes check_part(); there is a part; most >= 1.
 [[nodiscard]] MeshPart page_mesh(const std::vector<MeshPart>& parts, std::size_t most);
 
-// The same of parts that are visited one by one, several times, always in the same order.
+// Takes parts that are visited one by one, several times, always in the same order.
 using VisitPart = std::function<void(const MeshPart&)>;
 [[nodiscard]] MeshPart page_mesh_of(const std::function<void(const VisitPart&)>& visit_all, std::size_t most);
 

@@ -15,7 +15,7 @@ namespace tex::cli {
 // curve (safe), 12.3 degrees". Empty for a map without either.
 [[nodiscard]] std::string repairs_text(const std::string& name, const Repaired& repaired);
 
-// The same, as --json prints it, with notes, too.
+// What --json prints of it, with notes, too.
 [[nodiscard]] Json repairs_json(const Repaired& repaired);
 
 // Counts of maps, for the last line.

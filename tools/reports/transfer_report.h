@@ -60,7 +60,7 @@ private:
     std::string path_;
     std::size_t maps_ = 1;  // of the run
     HtmlReport page_;
-    // Of each output.
+    // The texels of each output.
     struct Texels {
         std::int64_t covered = 0, missed = 0;
         bool failed = false;

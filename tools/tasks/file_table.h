@@ -41,7 +41,7 @@ public:
     const T* add(const std::string& path, T value, int standard = kStandardInput) {
         return add_keys(keys_of_file(path, standard), std::move(value));
     }
-    // The same by the place alone: for files that are replaced there, whatever their names lead to now.
+    // Finds it by the place alone: for files that are replaced there, whatever their names lead to now.
     const T* add_place(const std::string& path, T value) { return add_keys({place_of_file(path)}, std::move(value)); }
     // What is known about a file; null if nothing is.
     [[nodiscard]] const T* find(const std::string& path, int standard = kStandardOutput) const {

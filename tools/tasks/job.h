@@ -44,7 +44,7 @@ public:
         reached_ = fraction;
         return {threads_, [this, from, fraction](double done) { return advance(from + (fraction - from) * done); }};
     }
-    // The same for steps that take no Execution. Returns false if the job must stop.
+    // For steps that take no Execution. Returns false if the job must stop.
     [[nodiscard]] bool reached(double fraction) {
         reached_ = fraction;
         return advance(fraction);

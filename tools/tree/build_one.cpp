@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of textures, which are as large as they are.
+// For textures, which are as large as they are.
 constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
 
 // The output of `maker` that the recipe reads.

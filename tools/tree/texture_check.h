@@ -48,7 +48,7 @@ public:
     [[nodiscard]] Result<std::vector<std::string>> findings(const MadeTexture& made, const ReadOptions& read,
                                                             const Execution& execution) const;
 
-    // The same, for a normal map that is an input, at `path`. Requirements are those of outputs.
+    // Checks a normal map that is an input, at `path`. Requirements are those of outputs.
     [[nodiscard]] Result<std::vector<std::string>> findings_of_input(const std::string& path, const ReadOptions& read,
                                                                      const Execution& execution) const;
 

@@ -266,7 +266,7 @@ inline constexpr Named<PictureKind> kPictureKindNames[] = {
 struct CheckReport {
     std::string file;
     std::string map = {};  // of a map in a model: its material and image, "Leather: leather_n.png"; else empty
-    // Of such a map: its material as MeshSelection names it; empty if that has another normal map, too.
+    // The material of such a map, as MeshSelection names it; empty if that has another normal map, too.
     std::string material = {};
     std::vector<Finding> findings;  // by rule id, then level
     int explained = 0;              // findings left out because another one explains them

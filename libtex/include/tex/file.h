@@ -265,7 +265,7 @@ TEX_API void remove_unfinished_files() noexcept;
 struct SourceOptions {
     ReadOptions read;
 
-    // As for unpack(). Without a swizzle the file's own is used, or guess_swizzle() if the file has none.
+    // Options of unpack(). Without a swizzle the file's own is used, or guess_swizzle() if the file has none.
     UnpackOptions unpack;
 
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle takes precedence

@@ -305,13 +305,13 @@ struct Texture {
     // texture tools, --normal-mode). Elsewhere such texels are DXT5nm. guess_swizzle() asks for it.
     bool x_in_grey = false;
 
-    // As Image::normal_encoding: "signed" if floats are the components of normals themselves, or empty.
+    // Image::normal_encoding of its levels: "signed" if floats are the components of normals themselves, or empty.
     std::string normal_encoding;
 
     // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
     bool srgb = false;
 
-    // Of heights: the strengths with which bake() makes the normals again from which they were integrated. 0: not
+    // For heights: the strengths with which bake() makes the normals again from which they were integrated. 0: not
     // known.
     float bumpiness_x = 0.0f, bumpiness_y = 0.0f;
 

@@ -96,7 +96,7 @@ struct MeshMaterial {
     std::string normal_map;       // the path of the normal map as the file states it; empty: none, or inside the file
     int uv_set = 0;               // the set of UVs that the normal map uses
     bool has_normal_map = false;  // in a file or inside the mesh's file
-    // Of the normal map. Without one, that which all textures of the material share.
+    // The one of the normal map. Without one, that which all textures of the material share.
     UvTransform uv_transform = {};
     bool mixed_transforms = false;  // there is no normal map, and the other textures differ in this
 };
@@ -241,7 +241,7 @@ struct SelectedPart {
     bool has_tangents = false;          // every part has stored tangents, whether or not they were chosen
     bool has_transform = false;         // UVs were moved: they are not those of the file
     std::vector<SelectedPiece> pieces;  // in the order of their triangles
-    // Those of the mesh, and what the choice left out, as sentences that follow the name of the file.
+    // Warnings of the mesh, and what the choice left out, as sentences that follow the name of the file.
     std::vector<std::string> remarks = {};
     // Positions, normals and triangles that in_tile() left out, for TransferInputs::around; otherwise empty.
     MeshPart rest = {};
@@ -290,8 +290,8 @@ struct SceneParts {
 // Copies of parts with fewer triangles than this, together, are made: rays are faster, and the memory does not matter.
 inline constexpr std::size_t kFewCopied = std::size_t{1} << 18;
 
-// As parts_in_scene(), but parts that nodes show more than once are not copied if that would make kFewCopied triangles
-// or more, so that a forest takes as much memory as one tree: they stay in their own space, for
+// parts_in_scene(), but parts that nodes show more than once are not copied if that would make kFewCopied triangles or
+// more, so that a forest takes as much memory as one tree: they stay in their own space, for
 // TransferInputs::high_places. Parts that are shown once have a place there, too, and are moved. If no part is shown
 // more than once, or copies are made, the parts are those of parts_in_scene(), and there are no places.
 // `most` limits copies and places of parts that are shown more than once, alone: a place counts as 16 triangles.
@@ -678,7 +678,7 @@ struct TransferredMaps {
 
     std::int64_t rays = 0;  // all that were cast from samples and from hits
 
-    // As used, in the unit of the meshes; with a cage, front is the largest distance from it.
+    // What was used, in the unit of the meshes; with a cage, front is the largest distance from it.
     double front = 0.0, back = 0.0;
     double diagonal = 0.0;                   // of the low mesh's box
     float lowest = 0.0f, highest = 0.0f;     // heights of hits, also if no map of heights is made

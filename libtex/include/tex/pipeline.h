@@ -187,8 +187,8 @@ struct PackFileOptions {
     std::optional<int> level;       // only this level of the source, as the base level; none: all levels
     std::optional<Scaling> scale;   // none: the slopes stay as they are
     std::optional<MipOptions> mip;  // levels are built from the base level; none: the source's own levels are kept
-    // As MipOptions::max_side, if `mip` is not set: larger levels of the source are left out. If it has none that is
-    // small enough, one is built from its base level, or from `level`.
+    // MipOptions::max_side if `mip` is not set: larger levels of the source are left out. If it has none that is small
+    // enough, one is built from its base level, or from `level`.
     int max_side = 0;
     // Codes stay as they are, apart from those of y if it is flipped, in each output that has the format of the source,
     // or, if neither has blocks, its sample kind and bits and a channel for z if the source has one. Vectors are not
@@ -252,7 +252,7 @@ struct LayerFile {
     std::string input;
     SourceOptions source;
 
-    // As in Layer.
+    // These mean what they mean in Layer.
     float scale = 1.0f;
     float tiling_x = 1.0f, tiling_y = 1.0f;
     float offset_x = 0.0f, offset_y = 0.0f;
@@ -280,7 +280,7 @@ struct BlendFileOptions {
     BlendOptions blend;
     MipOptions mip;
 
-    // As in PackFileOptions, given the properties of the base.
+    // What PackFileOptions has, given the properties of the base.
     std::function<PackOptions(const SourceInfo& base)> pack;
     WriteOptions write;
     LevelNames level_names;      // as in BakeFileOptions

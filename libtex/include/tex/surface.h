@@ -24,7 +24,7 @@ namespace tex::inline v1 {
 struct IntegrateOptions {
     BakeOptions bake;  // how slopes were measured
 
-    // As in HeightField: the height of value 1.0 in texel widths; 1e-20 to 1e20 in magnitude.
+    // What HeightField holds: the height of value 1.0 in texel widths; 1e-20 to 1e20 in magnitude.
     float bumpiness_x = 1.0f;
     float bumpiness_y = 1.0f;
     Wrap wrap_x = Wrap::repeat;

@@ -125,7 +125,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
         return background
             .mask[static_cast<std::size_t>(j) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(i)];
     };
-    // Of grey: what is left of it has no direction. Other values may be damage of the whole map.
+    // What is left of grey has no direction. Other values may be damage of the whole map.
     const auto [bx, by, bz] = background.value;
     const bool is_short = bx * bx + by * by + bz * bz < kShortest * kShortest;
     const auto is_like = [&](const StoredVector& v) {

@@ -14,7 +14,7 @@ namespace tex::inline v1 {
 // but a codec's lie on all. The result is the lesser of both directions, for channel x or y, whichever shows more.
 double grid_ratio(const Stored& stored, int block);
 
-// The same, but divided by the largest of the medians at the other places within blocks. It is 1 if the grid is that of
+// Such a ratio, divided by the largest of the medians at the other places within blocks. It is 1 if the grid is that of
 // a map which was enlarged by a divisor of `block`: its lines are all alike.
 double grid_lead(const Stored& stored, int block);
 

@@ -17,7 +17,7 @@ constexpr double kBehindShare = 0.05;
 constexpr double kColorShare = 0.9;
 constexpr double kExtremeShare = 0.9;
 constexpr float kExtreme = 8.0f / 255.0f;  // of a stored channel: as near to 0 or 1 as metalness is
-// Of x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
+// For x: occlusion is near 1, or an unused 0. Flat maps that went through the sRGB curve have 0.57.
 constexpr double kFarMean = 0.7;
 constexpr double kFarOffUnit = 0.25;  // of the length of a constant vector
 

@@ -48,7 +48,7 @@ inline constexpr double kNoiseCorrelation = 0.05;
 // Share of vectors of about unit length. Normal maps have 0.84 and more, after JPEG and BC1, too. Colour pictures have
 // up to 0.57; those of one light colour have up to 1, and centre elsewhere.
 inline constexpr double kUnitShare = 0.75;
-// The same after a damage was undone. Rounding came in between: 0.63 and more.
+// The share after a damage was undone. Rounding came in between: 0.63 and more.
 inline constexpr double kRestoredShare = 0.6;
 inline constexpr double kRestoredSurely = 0.9;  // colour pictures that centre then: at most 0.46
 // Medians of x and y, or of the two components that are not near 1. Leaning maps: up to 0.29.

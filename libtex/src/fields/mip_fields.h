@@ -9,7 +9,7 @@
 
 namespace tex::inline v1 {
 
-// Of sides and counts for which 0 sets no limit.
+// The range of sides and counts for which 0 sets no limit.
 inline constexpr Range kNoLimit{.least = 0.0, .zero = "for no limit"};
 
 // The fields but for those about data beside the normals.

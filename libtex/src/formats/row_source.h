@@ -61,7 +61,7 @@ public:
     [[nodiscard]] bool is_turned() const { return is_turned_; }     // Texture::turned
     // The file says that colours were multiplied by alpha. They are read as they are stored.
     [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
-    // That parts of the file were never written, as a sentence, which remark() has too.
+    // Says that parts of the file were never written, as a sentence, which remark() has too.
     [[nodiscard]] const std::string& absent() const { return absent_; }
     // Whether store() makes texels NaN of which the file says, by a mask, that they hold no data.
     [[nodiscard]] bool is_masked() const { return is_masked_; }

@@ -57,7 +57,7 @@ HWY_INLINE std::int64_t search_groups(const TreeView& tree, Groups groups, const
     });
 }
 
-// The same in a tree that is a place. The hit may be that of another one.
+// Traces in a tree that is a place. The hit may be that of another one.
 template <bool kAny>
 std::int64_t search_place(const PlacedTree& place, const Ray& ray, const EdgeRay& edge, RayHit& hit) {
     BoxRay box;
@@ -66,7 +66,7 @@ std::int64_t search_place(const PlacedTree& place, const Ray& ray, const EdgeRay
     return search_groups<kAny>(place.tree, PlacedGroups(place), ray, edge, box, hit);
 }
 
-// The same in a tree of places.
+// Traces in a tree of places.
 template <bool kAny>
 std::int64_t search_places(const TreeView& tree, const Ray& ray, const EdgeRay& edge, BoxRay& box, RayHit& hit) {
     std::int64_t inside = 0;

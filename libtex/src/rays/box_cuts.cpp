@@ -126,7 +126,7 @@ void halve_range(const BoxedTriangle* boxes, const BoxRange& range, BoxRange& le
     }
 }
 
-// Of many boxes, the longest axis mostly suffices.
+// Where there are many boxes, the longest axis mostly suffices.
 bool cut_range(BoxedTriangle* boxes, const BoxRange& range, BoxRange& left, BoxRange& right) {
     if (range.count() > kMany) {
         const FloatBox bounds = bounds_of_boxes(range);

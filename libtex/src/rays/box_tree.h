@@ -65,7 +65,7 @@ private:
     friend class TreeBuilder;
     friend class PlaceBuilder;
     [[nodiscard]] NearestPoint search(Vector3 p, double most, double enough) const;
-    // Of all triangles.
+    // Sets the bounds of all triangles.
     void set_bounds(const FloatBox& all);
 
     std::vector<Boxes> boxes_;

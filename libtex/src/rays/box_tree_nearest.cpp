@@ -87,7 +87,7 @@ struct StoredSpace {
     [[nodiscard]] static std::uint32_t number(std::uint32_t triangle) { return triangle; }
 };
 
-// As NodeTransform::position().
+// Does what NodeTransform::position() does.
 Float3 placed_corner(const PlacedTree& place, double x, double y, double z) {
     float moved[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {

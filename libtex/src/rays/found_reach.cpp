@@ -61,7 +61,7 @@ struct StandingVertices {
     }
 };
 
-// Of more vertices in all places, some are left out. Copies of a part could not have had so many.
+// Where all places have more vertices, some are left out. Copies of a part could not have had so many.
 constexpr std::size_t kMostPlacedVertices = std::size_t{1} << 24;
 
 std::vector<StandingVertices> vertices_of(const Triangles& triangles) {

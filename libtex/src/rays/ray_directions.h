@@ -24,12 +24,12 @@ public:
     static Result<RayDirections> make(const MeshPart& part, RayMode mode, double width, double angle,
                                       const Execution& execution);
 
-    // Of unit length, at the point of the triangle that has these weights. `work` is what hard edges cost.
+    // A direction of unit length, at the point of the triangle that has these weights. `work` is what hard edges cost.
     [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point,
                              RayWork& work) const;
     // The direction with this k of RayMode::straight.
     [[nodiscard]] Vector3 skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const;
-    // Those of many points of a triangle. They mean nothing if the work is not fair afterwards.
+    // Directions at many points of a triangle. They mean nothing if the work is not fair afterwards.
     void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
                std::size_t count, VectorArrays<double> directions, RayWork& work) const;
 

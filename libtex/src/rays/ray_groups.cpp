@@ -42,7 +42,7 @@ Result<void> RayGroups::place(const std::vector<MeshPart>& high, const TransferI
     return {};
 }
 
-// Those with a number, or all of them.
+// Takes those with a number, or all of them.
 Triangles RayGroups::triangles_of(const std::vector<MeshPart>& high, const std::vector<int>& numbers,
                                   int number) const {
     const auto belongs = [&](std::size_t k) { return numbers.empty() || numbers[k] == number; };

@@ -79,7 +79,7 @@ public:
 
     // The part of each place, if there are places.
     [[nodiscard]] const std::vector<const MeshPart*>& parts() const { return parts_; }
-    // Of parts(); empty if all stand where they are stored.
+    // For each of parts(); empty if all stand where they are stored.
     [[nodiscard]] const std::vector<StandingPart>& places() const { return places_; }
     // The place of a triangle's part among the parts.
     [[nodiscard]] std::size_t part_of(std::size_t triangle) const {

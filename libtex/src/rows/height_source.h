@@ -44,7 +44,7 @@ struct HeightCounts {
     std::int64_t luma = 0;         // texels for which `automatic` took luma
     std::int64_t invalid = 0;      // NaN, infinite or no-data texels, which are now NaN
     std::int64_t implausible = 0;  // as in HeightReport
-    // Of heights in bytes: sums of the steps from each texel to the next one of its row.
+    // For heights in bytes: sums of the steps from each texel to the next one of its row.
     std::int64_t red_steps = 0, green_steps = 0;
 
     HeightCounts& operator+=(const HeightCounts& other) {

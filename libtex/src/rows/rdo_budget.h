@@ -67,7 +67,7 @@ public:
     // Whether lambda had to change so much that a better plan is worth another pass. Says so early if it can: after the
     // first runs, or after the last one.
     [[nodiscard]] bool has_wandered() const;
-    // That plan, after the runs so far have grown by `growth`.
+    // A better plan, after the runs so far have grown by `growth`.
     [[nodiscard]] RdoGrowth better_plan(double growth);
 
 private:

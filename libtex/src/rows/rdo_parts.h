@@ -29,7 +29,7 @@ public:
 
     // The number of the part that a texel of the band is in, from 0.
     [[nodiscard]] int at(int column, int row) const;
-    // The same of the middle of each block, row by row, of `rows` rows of `across` blocks.
+    // The part that the middle of each block is in, row by row, of `rows` rows of `across` blocks.
     [[nodiscard]] std::vector<int> of_blocks(Extent block, int across, int rows) const;
 
 private:
