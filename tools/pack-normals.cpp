@@ -59,8 +59,8 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
                     "Occlusion and heights beside the normals.");
     command.example("pack-normals model.glb --out-dir out --for unreal --name '{stem}_{material}.{type}'",
                     "Every normal map that the materials of a model use.");
-    command.example("pack-normals scene.glb -o fixed.glb --y-in measured --y up",
-                    "A model whose maps may have green down.");
+    command.example("pack-normals scene.glb -o fixed.glb --y-in 'measured, else up' --y up",
+                    "A model whose maps may have green down; those that do not show it stay.");
 }
 
 Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {

@@ -188,7 +188,7 @@ TEST_F(ModelInputs, WhatCannotBeIsSaid) {
     EXPECT_NE(some.err.find("warning: empty.gltf: no material uses a normal map\n"), std::string::npos) << some.err;
     refuses("preview-normals bad.glb N802*.glb -o x.png", 4, "bad.glb");
     EXPECT_TRUE(scratch_.has("x.png"));  // a sheet with an empty cell
-    refuses("pack-normals N802*.glb -o N802-used-as-color.glb --container dds", 2, "is the input");
+    refuses("pack-normals N802*.glb -o N802-used-as-color.glb", 2, "is the input");
 }
 
 // A map of the material "m_0" and one of the first material "m" must not meet.

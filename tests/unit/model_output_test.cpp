@@ -232,6 +232,18 @@ TEST_F(ModelOutput, CompressedBytesMoveWithTheirOffsets) {
     EXPECT_FALSE(after.document["bufferViews"][1].contains("byteOffset"));
 }
 
+TEST_F(ModelOutput, InGlbASplitPictureNeedsNoFile) {
+    write_glb(R"([{"normalTexture":{"index":0},"emissiveTexture":{"index":0}}])");
+    Chunks before = chunks("m.glb");
+    before.document["images"][0] = json::parse(R"({"uri":"n.png"})");
+    write("m.glb", GltfMaker::glb_of(before.document.dump(), before.binary));
+    write("n.png", std::string("old"));
+    changes("m.glb", "out.glb", "", "new");
+    const Chunks after = chunks("out.glb");
+    EXPECT_EQ(after.image(after.source_of_slot(after.document["materials"][0]["normalTexture"])), "new");
+    EXPECT_EQ(after.document["images"][0]["uri"], "n.png");
+}
+
 class ModelOutputFiles : public ModelOutput {
 protected:
     ModelOutputFiles() {

@@ -359,7 +359,7 @@ constexpr Rule kRules[] = {
     {"N801", "two-channel-in-model", model, error, true, "The image has two channels.",
      "glTF reads x, y and z of normals from R, G and B. BC5, EAC RG11 and other files of two channels give 0 for blue, "
      "which is z = -1. An engine that knows its own files may rebuild z; other readers of the model do not.",
-     "Store the map with three components: PNG, WebP, or KTX2 with rgb8.", ""},
+     "pack-normals FILE --format SAME -o FIXED", ""},
     {"N802", "used-as-color", model, error, true, "The image is used as a colour, too.",
      "glTF reads colours as sRGB and normals as linear values. One image cannot be both: either the lighting or the "
      "colour is wrong.",

@@ -78,8 +78,8 @@ void GltfViews::replace(std::int64_t view, std::span<const std::byte> bytes) {
     changes_[buffer_of(view)].replaced.push_back({static_cast<std::size_t>(view), bytes});
 }
 
-std::int64_t GltfViews::add(std::int64_t like, std::span<const std::byte> bytes) {
-    Changes& changes = changes_[buffer_of(like)];
+std::int64_t GltfViews::add(std::size_t buffer, std::span<const std::byte> bytes) {
+    Changes& changes = changes_[buffer];
     changes.added.push_back(bytes);
     changes.numbers.push_back(added_.size());
     added_.emplace_back();
@@ -128,15 +128,15 @@ Result<std::vector<std::byte>> GltfViews::remake(std::size_t buffer, const Chang
         const auto last = static_cast<std::size_t>(after - steps.begin() - 1);
         return offset - steps[last].end + ends[last];
     };
-    JsonNode& list = *text.member("bufferViews");
+    JsonNode* const list = text.member("bufferViews");
     const auto found = ranges_.find(buffer);
     for (const Range& range : found == ranges_.end() ? std::vector<Range>() : found->second) {
         if (moved(range.begin) == range.begin) continue;
-        JsonNode* place = list.element(range.view);
+        JsonNode* place = list->element(range.view);
         if (!range.extension.empty()) place = place->member("extensions")->member(range.extension);
         place->set("byteOffset", std::to_string(moved(range.begin)));
     }
-    for (const Step& step : steps) list.element(step.view)->set("byteLength", std::to_string(step.bytes.size()));
+    for (const Step& step : steps) list->element(step.view)->set("byteLength", std::to_string(step.bytes.size()));
     for (std::size_t k = 0; k < changes.added.size(); ++k) {
         made.resize(aligned(made.size()));
         added_[changes.numbers[k]] = "{\"buffer\":" + std::to_string(buffer) +

@@ -39,8 +39,9 @@ public:
 
     // Gives the view other bytes. Precondition: is_own(). The bytes must outlive this.
     void replace(std::int64_t view, std::span<const std::byte> bytes);
-    // Adds a view of new bytes at the end of the buffer that this view is in. Returns its number.
-    std::int64_t add(std::int64_t like, std::span<const std::byte> bytes);
+    // Adds a view of new bytes at the end of the buffer. Returns its number.
+    std::int64_t add(std::size_t buffer, std::span<const std::byte> bytes);
+    [[nodiscard]] std::size_t buffer_of(std::int64_t view) const;
 
     // Makes the new buffers, and changes the views in the text, and their lengths. `load` has the bytes of a buffer.
     // Errors: bad_data, those of `load`.
@@ -54,6 +55,7 @@ public:
             if (!made) return made.error();
             changed.push_back({buffer, std::move(*made)});
         }
+        if (!added_.empty() && text.member("bufferViews") == nullptr) text.set("bufferViews", "[]");
         for (std::string& view : added_) text.member("bufferViews")->append(std::move(view));
         return changed;
     }
@@ -73,7 +75,6 @@ private:
         std::vector<std::span<const std::byte>> added;
         std::vector<std::size_t> numbers;  // of the views of `added`, counted in added_
     };
-    [[nodiscard]] std::size_t buffer_of(std::int64_t view) const;
     Result<std::vector<std::byte>> remake(std::size_t buffer, const Changes& changes, std::vector<std::byte> bytes,
                                           JsonNode& text);
 

@@ -181,9 +181,11 @@ Result<void> GltfWriter::house_pictures() {
             if (uses > 0 && views_.is_own(*view, static_cast<std::size_t>(uses)))
                 views_.replace(*view, pictures_[p].bytes);
             else
-                home.view = views_.add(*view, pictures_[p].bytes);
+                home.view = views_.add(views_.buffer_of(*view), pictures_[p].bytes);
         } else if (const std::string uri = image(like)["uri"].text().value_or(""); is_data_uri(uri)) {
             home.uri = encode_data_uri(media_type_of(pictures_[p].container), pictures_[p].bytes);
+        } else if (home.images.empty() && !binary_.empty() && root_["buffers"][0]["uri"].is_null()) {
+            home.view = views_.add(0, pictures_[p].bytes);  // of a GLB file, which need name no further file
         } else {
             auto path = path_of_uri(uri);
             if (!path) return path.error();
