@@ -3,7 +3,7 @@
 //
 //     repair_bench [MAPS]        the number of maps (40)
 //     repair_bench --pairs [MAPS]    two damages at once
-//     repair_bench --all         which maps of all of wild4 a safe repair changes
+//     repair_bench --all         what repairs do to all of wild4, undamaged
 //
 // Each damage is planted into the middle of a map in double, and the result is stored with 8 and 16 bits, as DXT5nm and
 // as BC5. A damage is visible if it turns the normals by a degree or more in the mean. It is undone if the mean angle
@@ -144,7 +144,7 @@ std::vector<Damage> pairs() {
         both.name = a.name + ", " + b.name;
         both.plant = [a, b](double* t, std::size_t k) { a.plant(t, k), b.plant(t, k); };
         both.undo = [a, b](double* t, std::size_t k) { b.undo(t, k), a.undo(t, k); };
-        both.likely = a.likely || b.likely;
+        both.likely = true;  // two damages can hide each other
         both.needs_y = a.needs_y || b.needs_y;
         both.needs_blue = true;
         both.with_alpha = a.with_alpha || b.with_alpha;
@@ -317,28 +317,32 @@ void print(const std::vector<Judged>& all, int half) {
     }
 }
 
-// Which files of wild4 a safe repair changes, with the verdicts of labels.tsv.
+// Which maps of wild4 a safe repair changes, with the verdicts of labels.tsv, and which other pictures a likely one
+// takes for maps.
 int list_changed() {
     std::ifstream in(kWildMaps + "labels.tsv");
-    int files = 0, changed = 0;
+    int maps = 0, others = 0, changed = 0, taken = 0;
     for (std::string line; std::getline(in, line);) {
         std::istringstream fields(line);
         std::string file, kind, findings, verdict;
         for (std::string* field : {&file, &kind, &findings, &verdict}) std::getline(fields, *field, '\t');
-        if (kind != "normal" && kind != "labpbr") continue;
+        const bool is_map = kind == "normal" || kind == "labpbr";
         const auto texture = read_texture(kWildMaps + file);
         if (!texture) continue;
-        const auto repaired = repair(file, *texture);
-        ++files;
-        if (!repaired || repaired->steps.empty()) continue;
-        ++changed;
-        std::printf("%s (%s; %s):", file.c_str(), findings.c_str(), verdict.c_str());
+        RepairOptions options;
+        options.likely = !is_map;
+        const auto repaired = repair(file, *texture, options);
+        ++(is_map ? maps : others);
+        if (!repaired || repaired->steps.empty() || (!is_map && repaired->has_errors())) continue;
+        ++(is_map ? changed : taken);
+        std::printf("%s (%s; %s; %s):", file.c_str(), kind.c_str(), findings.c_str(), verdict.c_str());
         for (const RepairStep& step : repaired->steps)
             std::printf(" %s %s, %.2f degrees;", std::string(step.rule->id).c_str(), text_of(step).c_str(),
                         step.degrees);
         std::printf("%s\n", repaired->has_errors() ? " an error is left" : "");
     }
-    std::printf("%d of %d maps are changed\n", changed, files);
+    std::printf("safe repairs change %d of %d maps; likely ones make maps of %d of %d other pictures\n", changed, maps,
+                taken, others);
     return 0;
 }
 
