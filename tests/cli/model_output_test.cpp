@@ -153,7 +153,8 @@ TEST_F(ModelOutputs, OutputsThatReachInputsAreRefused) {
 TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals N804*.glb -o x.gltf", 4, "is GLB, and so the output must be called .glb: x.gltf");
     refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");
-    refuses("pack-normals up.png -o x.glb", 2, "up.png: is not a glTF model, and only a model can become a model");
+    refuses("pack-normals up.png -o x.glb", 4, "up.png: is not a glTF model");
+    refuses("pack-normals none.glb -o x.glb", 3, "none.glb: no such file");
     refuses("pack-normals N802*.glb N804*.glb -o x.glb", 2, "-o takes one input, 2 are given");
     refuses("pack-normals N804*.glb -o x.glb --format bc5", 2,
             "models hold normals as rgb8, rgba8, rgb16, rgba16, not");

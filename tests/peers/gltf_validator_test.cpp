@@ -318,6 +318,8 @@ TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithOtherPictures) {
     }
     std::sort(models.begin(), models.end());
     std::vector<std::string> before, after;
+    tex::WriteOptions writing;
+    writing.sync = false;
     for (const fs::path& file : models) {
         const auto model = tex::read_model_maps(file.string());
         if (!model || model->maps.empty()) continue;
@@ -328,7 +330,7 @@ TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithOtherPictures) {
             if (pictures.empty()) continue;
             const fs::path output = scratch_.path("out/" + std::to_string(after.size())) / file.filename();
             fs::create_directories(output.parent_path());
-            const auto written = tex::write_model(file.string(), output.string(), {pictures});
+            const auto written = tex::write_model(file.string(), output.string(), {pictures}, {}, writing);
             ASSERT_TRUE(written) << written.error().message();
             const auto again = tex::read_model_maps(output.string());
             ASSERT_TRUE(again) << again.error().message();

@@ -70,9 +70,6 @@ std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOption
     std::vector<Task> tasks;
     std::vector<std::vector<ModelFile>> all_files;
     for (const Input& input : inputs) {
-        if (!is_model(input.name)) {
-            throw UsageError(printable(input.name), "is not a glTF model, and only a model can become a model");
-        }
         Task task{input.name, output_for(input, files), *own.container};
         task.engine = own.engine;
         task.shared = rules.shared;

@@ -24,7 +24,10 @@ bool share_an_image(const Model& model, const ModelMap& a, const ModelMap& b) {
 Result<ModelOutput> output_of(const std::string& input, const std::string& material, const MeshReadOptions& options) {
     ModelOutput output;
     const auto maps = with_maps_of_models({{input}}, material, options);
-    if (maps.front().model == nullptr) return Error{ErrorCode::unsupported, input, "is not a glTF model"};
+    if (maps.front().model == nullptr) {  // it is no model, or cannot be opened
+        const auto model = read_model_maps(input, options);
+        return model ? Error{ErrorCode::io, input, "changed while it was read"} : model.error();
+    }
     if (maps.front().model->error) return *maps.front().model->error;
     if (!maps.front().model->map) {
         return Error{ErrorCode::unsupported, input,
