@@ -2,6 +2,7 @@
 // repair-normals: undoes the damage that check-normals proves.
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,6 +27,10 @@ namespace {
 
 using namespace tex;
 
+using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 40;  // of an input
+
 class RepairNormals : public cli::Converter {
 public:
     explicit RepairNormals(const cli::ProgramRow& row);
@@ -42,9 +47,10 @@ private:
         return rules;
     }
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] Result<void> write(cli::Job& job, Texture source, Repaired repaired);
-    [[nodiscard]] Result<void> copy(cli::Job& job);
-    [[nodiscard]] Result<void> pack(cli::Job& job, const Texture& texture, bool is_input, const CheckReport& report);
+    [[nodiscard]] Result<void> write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read);
+    [[nodiscard]] Result<void> copy(cli::Job& job, const std::vector<std::byte>& bytes);
+    [[nodiscard]] Result<void> pack(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
+                                    const CheckReport& report);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     [[nodiscard]] bool writes_to_output() const { return files.output == "-" && !dry_run_; }
@@ -116,7 +122,15 @@ Result<void> RepairNormals::process(cli::Job& job) {
         return Error{ErrorCode::unsupported, job.task.input,
                      "is a model, and only pictures and textures are repaired: give its image"};
     }
-    auto texture = read_texture(job.task.input, job.read_options);
+    // Read once, so that what is copied is what was checked.
+    ReadOptions read = job.read_options;
+    if (!cli::is_special_file(job.task.input)) {
+        const auto text = cli::read_text_file(job.task.input, kMostBytes);
+        if (!text) return text.error();
+        const auto* const first = reinterpret_cast<const std::byte*>(text->data());
+        read.bytes = std::make_shared<const std::vector<std::byte>>(first, first + text->size());
+    }
+    auto texture = read_texture(job.task.input, read);
     if (!texture) return texture.error();
     if (!job.reached(0.2)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     RepairOptions options = options_;
@@ -138,40 +152,38 @@ Result<void> RepairNormals::process(cli::Job& job) {
         if (writes_to_output()) job.warn("an error is left, and nothing is written; --dry-run shows it");
         return {};
     }
-    return write(job, std::move(*texture), std::move(*repaired));
+    return write(job, std::move(*texture), std::move(*repaired), read);
 }
 
-Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repaired) {
+Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read) {
     const bool is_changed = repaired.texture.has_value();
     Texture texture = is_changed ? std::move(*repaired.texture) : std::move(source);
     const bool keeps = !stores_otherwise();
     const bool is_in_place = job.task.output == job.task.input;
-    const bool is_file = !cli::is_special_file(job.task.input) && !cli::has_level(job.task.output);
+    const bool is_file = read.bytes && !cli::has_level(job.task.output);
     if (keeps && !is_changed && is_in_place) return {};
-    if (keeps && !is_changed && is_file && container_of(job.task.input) == job.task.container) return copy(job);
+    if (keeps && !is_changed && is_file && container_of(job.task.input) == job.task.container)
+        return copy(job, *read.bytes);
     if (keeps && can_hold(job.task.container, texture.format)) {
         const auto written = cli::write_levels(job, std::move(texture), output.write_options(job));
         if (!written) return written.error();
         job.report["bytes"] = written->bytes;
         return {};
     }
-    return pack(job, texture, !is_changed && is_file && !is_in_place, repaired.after);
+    return pack(job, texture, is_changed ? nullptr : read.bytes, repaired.after);
 }
 
 // A map without faults stays as it is, with all that its file says.
-Result<void> RepairNormals::copy(cli::Job& job) {
-    constexpr std::size_t kMost = std::size_t{1} << 40;
-    const auto bytes = cli::read_text_file(job.task.input, kMost);
-    if (!bytes) return bytes.error();
-    if (auto written = cli::write_text_file(job.task.output, *bytes, output.write_options(job)); !written)
-        return written.error();
+Result<void> RepairNormals::copy(cli::Job& job, const std::vector<std::byte>& bytes) {
+    if (auto written = write_file(job.task.output, bytes, output.write_options(job)); !written) return written;
     job.wrote(job.task.output);
-    job.report["bytes"] = bytes->size();
+    job.report["bytes"] = bytes.size();
     return {};
 }
 
 // Stores the map as pack-normals does.
-Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, bool is_input, const CheckReport& report) {
+Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
+                                 const CheckReport& report) {
     PackFileOptions with;
     with.source.read = job.read_options;
     with.source.unpack.others = {true, true, false};
@@ -179,7 +191,8 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, bool is_
     with.keep_codes = true;
     // y is as the texels show; where they do not, nothing turns green over.
     if (output.y && !texture.y_known) with.source.unpack.y_axis = report.y.y.value_or(*output.y);
-    if (!is_input) {
+    with.source.read.bytes = std::move(bytes_of_input);
+    if (!with.source.read.bytes) {
         auto bytes = encode_file(texture, Container::ktx2, {}, {job.threads(), {}});
         if (!bytes) return bytes.error();
         with.source.read.bytes = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));

@@ -66,7 +66,7 @@ void add_repairs(Module& module) {
         "Repairs a Texture, which reports call `file`, or what a file or an array holds, as check() takes it, with the "
         "arguments of check(). Returns a dict: `texture` is None if there was no step; `steps` are dicts with the "
         "fields of RepairStep; `left` has a Finding and its class for each fault that is left; `before` and `after` "
-        "are CheckReports. `only` and `skip` list rules by id or name.",
+        "have the type CheckReport. `only` and `skip` list rules by id or name.",
         [](Call& call, Repairing& how, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {
             const py::object what = call["what"];
             Checks checks;

@@ -40,6 +40,7 @@ const Case kCases[] = {
     {"Unpacked", "unpack-normals", {"a.dds", "-o", "out.png", "--threads", "2"}, "a.dds"},
     {"Floats", "unpack-normals", {"a.dds", "-o", "out.exr", "--threads", "2"}, "a.dds"},
     {"Report", "bake-normals", {"a.png", "b.png", "--out-dir", ".", "--name", "out_{stem}.ktx2", "--json"}, ""},
+    {"Mended", "repair-normals", {"a.dds", "-o", "out.dds", "--threads", "2"}, "a.dds"},
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr", "--roughness-out", "rough.dds"}, "a.exr"},
     {"Heights", "integrate-normals", {"a.dds", "-o", "out.png", "--curvature-out", "curvature.exr"}, "a.dds"},

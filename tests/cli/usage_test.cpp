@@ -172,7 +172,8 @@ TEST_P(EveryUsage, OnlyOneInputGoesToStandardOutput) {
 }
 
 TEST_P(EveryUsage, OutputsMustNotBeInputs) {
-    refuses({"a.png", "-o", "a.png"}, "the output a.png is the input a.png");
+    // One command mends files in place, if they are named so.
+    if (GetParam() != "repair-normals") refuses({"a.png", "-o", "a.png"}, "the output a.png is the input a.png");
     refuses({"a.png", "-o", "./folder/../a.png"}, "is the input a.png");
     refuses({"a.png", "-o", "soft.png"}, "the output soft.png is the input a.png");
     refuses({"a.png", "-o", "hard.png"}, "the output hard.png is the input a.png");
