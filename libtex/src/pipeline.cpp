@@ -3,6 +3,8 @@
 
 #include <tex/pipeline.h>
 
+#include <cmath>
+
 #include "fields/blend_fields.h"
 #include "fields/field_check.h"
 #include "fields/mip_fields.h"
@@ -29,6 +31,7 @@ Result<void> check_no_heights(const OtherInputs& others) {
 
 Result<void> validate(const BakeFileOptions& options) {
     if (auto valid = validate(options.bake); !valid) return valid;
+    if (!std::isfinite(options.vertical_scale)) return bad_option("vertical_scale: must be finite");
     if (auto valid = validate(options.mip); !valid) return valid;
     return validate(options.pack);
 }

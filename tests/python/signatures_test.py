@@ -29,6 +29,7 @@ NOT_BOUND = {
     "find_by_name": "words are the names",
     "follows_normals": "a question about one word: is it 'roughness' or 'gloss'",
     "is_model": "read_model() says if a file is none",
+    "latitude_of": "HeightField.ground, which bake() applies",
     "least_response_of": "integrate() takes it by default",
     "map_name": "the field `name` of a map of read_model()",
     "maps_of": "a filter of a list",
@@ -44,7 +45,9 @@ NOT_BOUND = {
     "remove_unfinished_files": "for handlers of signals, which Python calls later",
     "selection_of": "select_part(material=..., uv_set=...)",
     "share_maps": "run('blend-normals', ...) shares details between many bases",
+    "strength_on_ground": "HeightField.ground, which bake() applies",
     "stretch_heights": "for numpy: (heights - low) / (high - low)",
+    "texel_size": "HeightField.ground, which bake() applies",
     "to_string": "layouts are words",
     "validate": "check() validates its arguments",
 }
