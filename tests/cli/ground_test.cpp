@@ -173,7 +173,7 @@ TEST_F(OnTheGround, AnHgtIsWhereItsNameSays) {
     for (std::size_t k = 0; k < heights.size(); k += 2) heights[k + 1] = static_cast<char>(k / 2 % 1201 % 100);
     const std::vector<std::pair<std::string, std::string>> names = {
         {"N46E007.hgt", "64 x 92.6 m a texel at 46.5 north"},
-        {"s34_e018_3arc.hgt", "77.3 x 92.4 m a texel at 33.5 south"},
+        {"s34_e018_3arc.hgt", "77.4 x 92.4 m a texel at 33.5 south"},
         {"N00W001.SRTMGL3.hgt", "92.8 x 92.1 m a texel at 0.5 north"}};
     for (const auto& [name, text] : names) {
         scratch_.write(name, heights);
