@@ -11,6 +11,11 @@
 namespace tex::cli {
 namespace {
 
+// Three digits, or all of a whole number of metres.
+std::string metres_text(double metres) {
+    return metres < 1000.0 ? fmt::format("{:.3g}", metres) : fmt::format("{:.0f}", metres);
+}
+
 std::string heights_text(const Ground& ground) {
     constexpr double kFoot = 0.3048, kSurveyFoot = 1200.0 / 3937.0, kSame = 1e-9;
     const auto is = [&](double metres) { return std::abs(ground.height_metres - metres) < kSame; };
@@ -26,7 +31,7 @@ std::string heights_text(const Ground& ground) {
 std::string texel_text(const Ground& ground, int rows) {
     const double middle = 0.5 * (rows - 1);
     const TexelSize size = texel_size(ground, middle);
-    std::string text = fmt::format("{:.3g} x {:.3g} m a texel", size.width, size.height);
+    std::string text = fmt::format("{} x {} m a texel", metres_text(size.width), metres_text(size.height));
     if (ground.unit == GroundUnit::metre) return text;
     const double latitude = latitude_of(ground, middle);
     return text + fmt::format(" at {:.1f} {}", std::abs(latitude), latitude < 0.0 ? "south" : "north");
@@ -50,8 +55,9 @@ void note_ground(Job& job, const HeightReport& heights, const GroundUse& use) {
     const std::string file = printable(job.task.input), texel = texel_text(ground, use.extent.height);
     if (!use.is_used) {
         if (use.instead.empty()) return;
-        return job.say(fmt::format("{}: {} is used, not the {} that the file states ({:.4g} x {:.4g} m in all)\n", file,
-                                   use.instead, texel, size.width * use.extent.width, size.height * use.extent.height));
+        return job.say(fmt::format("{}: {} is used, not the {} that the file states ({} x {} m in all)\n", file,
+                                   use.instead, texel, metres_text(size.width * use.extent.width),
+                                   metres_text(size.height * use.extent.height)));
     }
     std::string line = fmt::format("{}: {}, {}", file, texel, heights_text(ground));
     if (use.vertical_scale != 1.0f) line += fmt::format(", {} times as steep", use.vertical_scale);
