@@ -12,6 +12,7 @@
 #include "batch/batch.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/ground.h"
 #include "options/heights.h"
 #include "options/mips.h"
 #include "options/others.h"
@@ -28,7 +29,8 @@ public:
 
 private:
     [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
-    void note_strength(cli::Job& job, const Strength& strength) const;
+    template <class Report>
+    void note_strength(cli::Job& job, const Report& done) const;
     template <class Report>
     void warn_of_flat(cli::Job& job, const Report& done) const;
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
@@ -39,7 +41,7 @@ private:
     [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
     void note(cli::Job& job, const StepsReport& done) override {
         reader_.note(job, done.heights);
-        note_strength(job, done.strength);
+        note_strength(job, done);
         warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
         warn_of_flat(job, done);
     }
@@ -114,6 +116,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     if (reader_.strength.is_given)
         options.strength = [this](Extent extent) { return reader_.strength.strength(extent); };
     options.auto_strength = reader_.strength.measured;
+    options.vertical_scale = reader_.strength.vertical_scale;
     options.tile = tiles_.tile_of(job.task);
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
@@ -136,7 +139,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
     note_output(job, {baked->extent, baked->levels, baked->left_out > 0, with.pack.encoding});
-    note_strength(job, baked->strength);
+    note_strength(job, *baked);
     if (baked->is_stated && job.task.output != "-")
         job.say(
             fmt::format("{}: --bumpiness {}, as the file states\n", cli::printable(job.task.input), baked->strength.x));
@@ -157,10 +160,14 @@ void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent
         steep_texels, extent.texels(), name_of(kEncodingNames, encoding), steepest, steepest < 100.0f ? 1 : 0));
 }
 
-void BakeNormals::note_strength(cli::Job& job, const Strength& strength) const {
-    job.report["bumpiness"] = {strength.x, strength.y};
-    if (reader_.strength.measured && job.task.output != "-")
-        job.say(fmt::format("{}: --bumpiness auto is {}\n", job.task.input, strength.x));
+template <class Report>
+void BakeNormals::note_strength(cli::Job& job, const Report& done) const {
+    const cli::StrengthOptions& given = reader_.strength;
+    job.report["bumpiness"] = {done.strength.x, done.strength.y};
+    if (given.measured && job.task.output != "-")
+        job.say(fmt::format("{}: --bumpiness auto is {}\n", job.task.input, done.strength.x));
+    const Extent extent{done.extent.width << done.left_out, done.extent.height << done.left_out};
+    cli::note_ground(job, done.heights, {done.on_ground, given.given_name(), given.vertical_scale, extent});
 }
 
 // Slopes that nobody sees.
@@ -170,10 +177,11 @@ void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
     const double degrees = kDegrees * std::atan(static_cast<double>(done.usual_slope));
     const bool is_asked_for = done.strength.x == 0.0f && done.strength.y == 0.0f;
     if (degrees >= kFaint || done.auto_strength == 0.0f || is_asked_for) return;  // 0: a placeholder
-    job.warn(
-        fmt::format("nearly flat: 99 % of the slopes are below {:.2g} degrees, which shows little; --bumpiness "
-                    "auto would be --bumpiness {}",
-                    std::max(0.01, degrees), done.auto_strength));
+    const std::string remedy = done.on_ground
+                                   ? fmt::format("--vertical-scale {} would make it 45", done.auto_strength)
+                                   : fmt::format("--bumpiness auto would be --bumpiness {}", done.auto_strength);
+    job.warn(fmt::format("nearly flat: 99 % of the slopes are below {:.2g} degrees, which shows little; {}",
+                         std::max(0.01, degrees), remedy));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

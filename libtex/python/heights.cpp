@@ -57,6 +57,8 @@ void tell(const py::dict& facts, const HeightReport& report) {
     facts["implausible_texels"] = report.implausible_texels;
     facts["stored"] = report.stored;
     facts["remark"] = str_of(report.remark);
+    facts["ground"] = object_of(report.ground);
+    facts["ground_remark"] = str_of(report.ground_remark);
     facts["deband"] = dict_of_deband(report.deband);
 }
 
@@ -64,7 +66,8 @@ void tell(const py::dict& facts, const HeightReport& report) {
 py::object debanded(Call& call, Relief& relief, Running& running) {
     const Deband when = call.has("when") ? Convert<Deband>::from(call["when"], "when") : Deband::on;
     HeightField given = field_from(call["height"], "height", relief);
-    HeightField field{given.height.clone(), given.bumpiness_x, given.bumpiness_y, given.wrap_x, given.wrap_y};
+    HeightField field{given.height.clone(), given.bumpiness_x, given.bumpiness_y,
+                      given.wrap_x,         given.wrap_y,      given.ground};
     DebandedField found = running.run([&](const Execution& e) { return deband(std::move(field), when, e); });
     py::dict result = dict_of_deband(found.report);
     result["field"] = object_of(static_cast<HeightField&&>(found));
@@ -96,8 +99,9 @@ void add_heights(Module& module) {
     module.verb<Relief, BakeOptions, Running>(
         "bake", {{"height", kHeights}}, "NDArray[np.float32]",
         "The normals of heights, an array (height, width, 3) of x, y and z. `height` is an array (height, width), a "
-        "HeightField, or a path or an Image, of which height_field() chooses the channel. bumpiness (1 for an array) "
-        "and wrap ('repeat' for an array) are a value or a pair for x and y.",
+        "HeightField, or a path or an Image, of which height_field() chooses the channel. bumpiness (for an array 1, "
+        "for an elevation model that states the size of its texels the slopes of the ground) and wrap ('repeat' for "
+        "an array) are a value or a pair for x and y.",
         [](Call& call, Relief& relief, BakeOptions& options, Running& running) -> py::object {
             const HeightField field = field_from(call["height"], "height", relief, false);  // bake() checks
             return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));

@@ -150,6 +150,19 @@ void Loader::load(const py::object& from, T& value) {
 }
 
 template <class F>
+void each_part(Ground& o, F& f) {
+    f(o.unit);
+    f(o.width);
+    f(o.height);
+    f(o.north);
+    f(o.north_up);
+    f(o.equator_radius);
+    f(o.pole_radius);
+    f(o.height_metres);
+    f(o.has_height_unit);
+}
+
+template <class F>
 void each_part(Image& o, F& f) {
     f(o.planes);
     f(o.names);
@@ -162,6 +175,8 @@ void each_part(Image& o, F& f) {
     f(o.scale);
     f(o.offset);
     f(o.remark);
+    f(o.ground);
+    f(o.ground_remark);
 }
 
 template <class F>
@@ -171,6 +186,7 @@ void each_part(HeightField& o, F& f) {
     f(o.bumpiness_y);
     f(o.wrap_x);
     f(o.wrap_y);
+    f(o.ground);
 }
 
 template <class F>

@@ -94,7 +94,7 @@ py::dict written(const Report& report) {
 }
 
 struct BakeFields {
-    float bumpiness_x = 1.0f, bumpiness_y = 1.0f;
+    std::optional<float> bumpiness_x, bumpiness_y;  // without them, what the file states
     BakeFileOptions file;
     PackFields pack;
     py::object others = py::none();
@@ -103,6 +103,7 @@ struct BakeFields {
 template <class F>
 void each_field(BakeFields& o, F& f) {
     f("bumpiness", axes(o.bumpiness_x, o.bumpiness_y));
+    f("vertical_scale", o.file.vertical_scale);
     f("read", o.file.read);
     f("color", o.file.color);
     f("heights", o.file.heights);
@@ -116,11 +117,13 @@ void each_field(BakeFields& o, F& f) {
 
 py::object baked(Call& call, BakeFields& fields, Running& running) {
     BakeFileOptions& options = fields.file;
-    need(std::isfinite(fields.bumpiness_x) && std::isfinite(fields.bumpiness_y), "bumpiness", "must be finite");
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
-    const Strength strength{fields.bumpiness_x, fields.bumpiness_y};
-    options.strength = [strength](Extent) { return strength; };
+    if (fields.bumpiness_x || fields.bumpiness_y) {
+        const Strength strength{fields.bumpiness_x.value_or(1.0f), fields.bumpiness_y.value_or(1.0f)};
+        need(std::isfinite(strength.x) && std::isfinite(strength.y), "bumpiness", "must be finite");
+        options.strength = [strength](Extent) { return strength; };
+    }
     options.pack = pack_options(fields.pack, output.container, YAxis::up, true);
     options.others = others_from(fields.others, true);
     const BakeFileReport report =
@@ -131,6 +134,9 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     facts["implausible_texels"] = report.heights.implausible_texels;
     facts["stored"] = report.heights.stored;
     facts["remark"] = str_of(report.heights.remark);
+    facts["ground"] = object_of(report.heights.ground);
+    facts["ground_remark"] = str_of(report.heights.ground_remark);
+    facts["on_ground"] = report.on_ground;
     facts["steep_texels"] = report.steep_texels;
     if (options.slopes) {
         py::dict slopes;

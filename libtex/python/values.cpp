@@ -47,6 +47,9 @@ void add_height_field(Module& module) {
                   })
         .property("bumpiness", "tuple[float, float]", "The height of value 1.0 in texel widths, along x and y.",
                   [](const HeightField& field) { return py::make_tuple(field.bumpiness_x, field.bumpiness_y); })
+        .property("ground", "dict[str, Any] | None",
+                  "The fields of Ground, if the heights lie on the ground; bumpiness is then a factor on its slopes.",
+                  [](const HeightField& field) { return object_of(field.ground); })
         .property("wrap", "tuple[str, str]", "What lies beyond the border, along x and y.",
                   [](const HeightField& field) { return py::make_tuple(word_of(field.wrap_x), word_of(field.wrap_y)); })
         .method(
@@ -201,12 +204,14 @@ HeightField field_from(py::handle from, std::string_view name, const Relief& rel
         field.bumpiness_y = given.bumpiness_y;
         field.wrap_x = given.wrap_x;
         field.wrap_y = given.wrap_y;
+        field.ground = given.ground;
         need(!finite || without_gil([&] { return is_finite(field.height.view()); }), name, kUnsound);
     } else if (std::optional<HeightField> read = field_of_source(from)) {
         field = std::move(*read);
     } else {
         field.height = plane_from(from, name, finite);
     }
+    if (relief.bumpiness_x || relief.bumpiness_y) field.ground.reset();
     field.bumpiness_x = relief.bumpiness_x.value_or(field.bumpiness_x);
     field.bumpiness_y = relief.bumpiness_y.value_or(field.bumpiness_y);
     field.wrap_x = relief.wrap_x.value_or(field.wrap_x);
@@ -264,6 +269,21 @@ py::bytes bytes_of(const std::vector<std::byte>& bytes) {
 void add_values(Module& module) {
     add_height_field(module);
     add_texture(module);
+}
+
+py::object object_of(const std::optional<Ground>& ground) {
+    if (!ground) return py::none();
+    py::dict result;
+    result["unit"] = word_of(ground->unit);
+    result["width"] = ground->width;
+    result["height"] = ground->height;
+    result["north"] = ground->north;
+    result["north_up"] = ground->north_up;
+    result["equator_radius"] = ground->equator_radius;
+    result["pole_radius"] = ground->pole_radius;
+    result["height_metres"] = ground->height_metres;
+    result["has_height_unit"] = ground->has_height_unit;
+    return result;
 }
 
 py::dict dict_of(const AngularError& error) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include <tex/tex.h>
@@ -32,6 +33,8 @@ private:
 
 // A new object of a class.
 [[nodiscard]] py::dict dict_of(const AngularError& error);
+// A dict of its fields, or None.
+[[nodiscard]] py::object object_of(const std::optional<Ground>& ground);
 [[nodiscard]] py::object object_of(Image image);
 [[nodiscard]] py::object object_of(HeightField field);
 [[nodiscard]] py::object object_of(Texture texture);

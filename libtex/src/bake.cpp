@@ -12,6 +12,7 @@
 #include "fields/field_check.h"
 #include "kernels/bake.h"
 #include "rows/bake_rows.h"
+#include "rows/ground.h"
 #include "rows/usable.h"
 #include "stream/slope_collector.h"
 #include "threads/no_throw.h"
@@ -35,6 +36,9 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
         if (!wraps) return wraps.error();
         if (!std::isfinite(field.bumpiness_x) || !std::isfinite(field.bumpiness_y))
             return bad_option("bumpiness: must be finite");
+        if (field.ground) {
+            if (auto valid = check_ground(*field.ground); !valid) return valid.error();
+        }
         NormalMap map(extent);
         const Gradient gradient = gradient_of(options);
         std::atomic<bool> finite = true;
@@ -43,7 +47,7 @@ Result<NormalMap> bake(const HeightField& field, const BakeOptions& options, con
             if (!are_finite(row, extent.width)) finite = false;  // the bake reads the row next
             return row;
         };
-        const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y};
+        const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y, field.ground};
         const auto body = [&](int begin, int end) {
             BakeRows rows(extent, heights, gradient, head, begin);
             for (int j = begin; j < end; ++j) rows.bake(j, {map.x.row(j), map.y.row(j), map.z.row(j)});

@@ -27,6 +27,8 @@ Result<Image> to_linear(Image image, const ColorOptions& options) {
             image.no_data = texel.planes.front().at(0, 0);
         }
         if (Result<void> converted = rows->convert(image, image.extent().height); !converted) return converted.error();
+        image.ground.reset();  // what a transfer curve has bent is in no unit
+        image.ground_remark.clear();
         return std::move(image);
     });
 }

@@ -15,6 +15,7 @@
 #include "fields/field_check.h"
 #include "fields/height_fields.h"
 #include "rows/blur.h"
+#include "rows/ground.h"
 #include "rows/height_bytes.h"
 #include "rows/height_source.h"
 #include "rows/usable.h"
@@ -133,8 +134,12 @@ Result<PictureHeights> height_field(const Image& image, const HeightOptions& opt
             auto done = blur(field, static_cast<double>(options.blur_sigma), execution, {filled, 1.0});
             if (!done) return done.error();
         }
-        return PictureHeights{std::move(field),
-                              {luma_texels, invalid_texels, *deband, implausible_texels, image.stored, image.remark}};
+        if (have_unit(facts, *source)) field.ground = image.ground;
+        PictureHeights heights{std::move(field),
+                               {luma_texels, invalid_texels, *deband, implausible_texels, image.stored, image.remark}};
+        heights.report.ground = heights.ground;
+        if (have_unit(facts, *source)) heights.report.ground_remark = image.ground_remark;
+        return heights;
     });
 }
 

@@ -3,6 +3,8 @@
 
 #include <tex/pipeline.h>
 
+#include <cmath>
+
 #include "fields/blend_fields.h"
 #include "fields/field_check.h"
 #include "fields/mip_fields.h"
@@ -35,6 +37,7 @@ Result<void> check_one_output(const WriteOptions& write, bool has_more) {
 Result<void> validate(const BakeFileOptions& options) {
     if (auto valid = check_one_output(options.write, static_cast<bool>(options.level_names)); !valid) return valid;
     if (auto valid = validate(options.bake); !valid) return valid;
+    if (!std::isfinite(options.vertical_scale)) return bad_option("vertical_scale: must be finite");
     if (auto valid = validate(options.mip); !valid) return valid;
     return validate(options.pack);
 }

@@ -26,6 +26,7 @@ struct LastStep {
         report.pack = options.pack;
         report.heights = done->heights;
         report.strength = done->strength;
+        report.on_ground = done->on_ground;
         report.usual_slope = done->usual_slope;
         report.auto_strength = done->auto_strength;
         report.steep_texels = done->steep_texels;

@@ -28,6 +28,7 @@ def objects(heights, normals):
     return [
         tex.read_image(SAMPLES / "bricks.png"),
         tex.HeightField(heights, (3, 4), ("clamp", "mirror")),
+        tex.height_field(tex.read_image(SAMPLES.parent / "tests/unit/geotiff/utm.tif")),
         texture,
         tex.encode_picture(tex.preview(normals[:8, :8])) and tex.preview(normals[:8, :8]),
         report,

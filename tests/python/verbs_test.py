@@ -17,6 +17,22 @@ def test_bake_gives_the_normals_of_the_command(commands, bricks, heights):
     assert n.tobytes() == commands.floats("n.exr").tobytes()
 
 
+def test_elevation_models_have_the_slopes_of_the_ground(commands):
+    source = SAMPLES.parent / "tests/unit/geotiff/degrees.tif"
+    commands("bake-normals", source, "-o", "n.exr", "--format", "float", "--mips", "none")
+    report = {}
+    field = tex.height_field(tex.read_image(source), report=report)
+    assert field.ground == report["ground"] and report["ground_remark"] == ""
+    assert (field.ground["unit"], field.ground["height_metres"]) == ("degree", 1)
+    for heights in (source, field):
+        assert tex.bake(heights).tobytes() == commands.floats("n.exr").tobytes()
+        assert tex.bake(heights, bumpiness=1).tobytes() == tex.bake(field.height, bumpiness=1).tobytes()
+    facts = tex.bake_file(source, "p.exr", pack={"encoding": "float"}, mip={"levels": 1})
+    assert facts["on_ground"] and commands.floats("p.exr").tobytes() == commands.floats("n.exr").tobytes()
+    assert not tex.bake_file(source, "p.exr", bumpiness=1)["on_ground"]
+    assert tex.HeightField(field, 2).ground is None and tex.HeightField([[0.0]]).ground is None
+
+
 def test_deband_keeps_the_codes_and_the_input():
     j, i = np.mgrid[0:96, 0:128]
     codes = np.round(60 + 40 * np.sin(i * 0.03) * np.cos(j * 0.02)).astype(np.float32)

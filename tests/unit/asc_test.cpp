@@ -66,10 +66,17 @@ TEST(Asc, NoDataIsThatOfArcGisIfTheFileNamesNone) {
     EXPECT_TRUE(std::isnan(read_grid("ncols 2 nrows 1 5 NaN")->planes[0].at(1, 0)));
 }
 
-TEST(Asc, CellsThatAreNotSquareAreSaid) {
-    EXPECT_EQ(read_grid("ncols 1 nrows 1 dx 2 dy 2.0001 5")->remark, "");
-    EXPECT_EQ(read_grid("ncols 1 nrows 1 dx 2 dy 3 5")->remark,
-              "the cells of the grid are not square (dx is not dy), but slopes are those of square texels");
+TEST(Asc, TheHeaderSaysWhereTheCellsAre) {
+    const auto image = read_grid("ncols 2 nrows 3 xllcorner 500000 yllcenter 5000000 dx 2 dy 3 1 2 3 4 5 6");
+    ASSERT_TRUE(image && image->ground);
+    EXPECT_EQ(image->ground->width, 2.0);
+    EXPECT_EQ(image->ground->height, 3.0);
+    EXPECT_EQ(image->remark, "");
+    const auto degrees = read_grid("ncols 1 nrows 5 xllcorner 7 yllcorner 46 cellsize 0.01 1 2 3 4 5");
+    ASSERT_TRUE(degrees && degrees->ground);
+    EXPECT_EQ(degrees->ground->unit, GroundUnit::degree);
+    EXPECT_NEAR(degrees->ground->north, 46.045, 1e-12);
+    EXPECT_FALSE(read_grid("ncols 1 nrows 1 5")->ground);
 }
 
 TEST(Asc, RefusesWhatIsDamagedAndNamesTheLine) {

@@ -83,7 +83,8 @@ TEST(BakeData, WholeMapsAgreeWithTheReference) {
     TEX_NEEDS_SHARED_DATA();
     double worst = 0.0;
     for (const std::string& path : height_maps()) {
-        const tex::HeightField field = read_heights(path);
+        tex::HeightField field = read_heights(path);
+        field.ground.reset();  // the reference knows bumpiness alone
         const double angle = largest_angle(tex::bake(field).value(), tex::reference::bake(field, {}));
         EXPECT_LT(angle, kLimit) << path;
         worst = std::max(worst, angle);

@@ -44,6 +44,23 @@ std::string texels_of(const Result<Image>& image) {
     return text;
 }
 
+TEST_F(Bil, TheHeaderSaysWhereTheCellsAre) {
+    const auto image = read("ULXMAP 7.5\nULYMAP 46.5\nXDIM 0.01\nYDIM 0.02\nPIXELTYPE SIGNEDINT", "abcd");
+    ASSERT_TRUE(image && image->ground) << image->ground_remark;
+    EXPECT_EQ(image->ground->unit, GroundUnit::degree);
+    EXPECT_EQ(image->ground->width, 0.01);
+    EXPECT_EQ(image->ground->height, 0.02);
+    EXPECT_EQ(image->ground->north, 46.5);
+    write("h.prj", "Projection UTM\nUnits METERS\n");
+    EXPECT_EQ(read("XDIM 30\nYDIM 20", "abcd")->ground->height, 20.0);
+    // GridFloat has the words of ASCII grids.
+    write("h.flt", std::string(16, '\0'));
+    write("h.hdr", "ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 100\ncellsize 5\nbyteorder LSBFIRST\n");
+    EXPECT_EQ(read("h.flt")->ground->width, 5.0);
+    EXPECT_FALSE(read("", "abcd")->ground);
+    EXPECT_EQ(read("", "abcd")->ground_remark, "");
+}
+
 TEST_F(Bil, ReadsEveryTypeAndOrder) {
     EXPECT_EQ(texels_of(read("", std::string("\0\1\x7f\xff", 4))), "0. 1. 127. 255.");
     EXPECT_EQ(texels_of(read("PIXELTYPE SIGNEDINT", std::string("\0\1\x80\xff", 4))), "0. 1. -128. -1.");

@@ -35,6 +35,7 @@ constexpr ForeignOption kForeignOptions[] = {
     {"-f --format --reporter", "--json, --sarif, --junit or --github"},
     {"-m --mipmap --mipmaps --genmipmap --generate-mipmaps --miplevels -miplevels --levels", "--mips"},
     {"-nomips -nomipmap --nomips --no-mips --no-mipmaps", "--mips none"},
+    {"-z --zfactor --z-factor --exaggeration --vertical-exaggeration --zscale --z-scale", "--vertical-scale"},
     {"--filter", "--kernel for slopes, --mip-filter for levels"},
     {"--filter -mipfilter --mipmap-filter", "--mip-filter"},
     {"--filter", "--kernel"},

@@ -88,6 +88,12 @@ void StrengthOptions::add(Command& command, bool can_measure) {
                    });
     command.option("--uv-height", "R", "the height of value 1.0 in widths of the map",
                    [this](const std::string& text) { uv_height = parse_double(text); });
+    if (can_measure) {
+        command
+            .number(vertical_scale, "--vertical-scale", "S", {},
+                    "make slopes S times as steep, also those of the ground")
+            .preset = "1";
+    }
     command.check([this, &command] {
         const std::vector<std::string> several = command.given_of({"--bumpiness", "--height-range", "--uv-height"});
         is_given = !several.empty();
@@ -95,7 +101,14 @@ void StrengthOptions::add(Command& command, bool can_measure) {
         if (command.given("--world-size") && !height_range)
             throw UsageError("--world-size does nothing without --height-range");
         if (height_range && !command.given("--world-size")) throw UsageError("--height-range needs --world-size");
+        if (measured && vertical_scale != 1.0f)
+            throw UsageError("--vertical-scale contradicts --bumpiness auto: give one");
     });
+}
+
+std::string StrengthOptions::given_name() const {
+    if (!is_given) return {};
+    return height_range ? "--world-size" : uv_height ? "--uv-height" : "--bumpiness";
 }
 
 Strength StrengthOptions::strength(Extent extent) const {

@@ -33,7 +33,8 @@ struct ColorGroup {
     [[nodiscard]] std::vector<std::string> files() const;
 };
 
-// Strength: --bumpiness, --height-range with --world-size, --uv-height. At most one of the three.
+// Strength: --bumpiness, --height-range with --world-size, --uv-height. At most one of the three; --vertical-scale
+// multiplies any of them.
 struct StrengthOptions {
     float bumpiness = HeightField{}.bumpiness_x;
     bool measured = false;  // --bumpiness auto
@@ -42,9 +43,12 @@ struct StrengthOptions {
     double width = 0.0;
     double height = 0.0;
     std::optional<double> uv_height;
+    float vertical_scale = 1.0f;
 
-    // `can_measure`: --bumpiness takes the word auto.
+    // `can_measure`: --bumpiness takes the word auto, and there is --vertical-scale.
     void add(Command& command, bool can_measure = false);
+    // The option that sets the strength; empty if none does.
+    [[nodiscard]] std::string given_name() const;
     [[nodiscard]] Strength strength(Extent extent) const;
 };
 

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "geo_keys.h"
+
 namespace tex::reader {
 namespace {
 
@@ -39,8 +41,8 @@ std::optional<double> number_of(std::string_view text) {
     return value;
 }
 
-// The number of GDAL's item with this role, for the first sample: <Item name="SCALE" sample="0" role="scale">2</Item>
-std::optional<double> item_of(std::string_view metadata, std::string_view role) {
+// The text of GDAL's item with this role, for the first sample: <Item name="SCALE" sample="0" role="scale">2</Item>
+std::optional<std::string_view> item_of(std::string_view metadata, std::string_view role) {
     for (std::size_t at = 0; (at = metadata.find("<Item ", at)) != std::string_view::npos; ++at) {
         const std::size_t close = metadata.find('>', at);
         const std::size_t end = metadata.find('<', close);
@@ -48,9 +50,22 @@ std::optional<double> item_of(std::string_view metadata, std::string_view role) 
         const std::string_view tag = metadata.substr(at, close - at);
         const bool is_first = tag.find("sample=") == std::string_view::npos || tag.find("sample=\"0\"") != tag.npos;
         if (is_first && tag.find("role=\"" + std::string(role) + "\"") != tag.npos)
-            return number_of(metadata.substr(close + 1, end - close - 1));
+            return metadata.substr(close + 1, end - close - 1);
     }
     return std::nullopt;
+}
+
+std::optional<double> number_in_item(std::string_view metadata, std::string_view role) {
+    const std::optional<std::string_view> text = item_of(metadata, role);
+    return text ? number_of(*text) : std::nullopt;
+}
+
+// The unit of heights that GDAL names takes precedence over that of a vertical system.
+void read_height_unit(std::string_view metadata, GridPlace& place) {
+    const std::optional<std::string_view> unit = item_of(metadata, "unittype");
+    if (!unit || unit->empty()) return;
+    const std::size_t length = unit->copy(place.height_unit, sizeof place.height_unit - 1);
+    place.height_unit[length] = '\0';
 }
 
 }  // namespace
@@ -77,11 +92,13 @@ void read_tags(TIFF* tiff, ReaderHeader& header) {
         if (std::find(std::begin(kGeoTags), std::end(kGeoTags), tag) != std::end(kGeoTags)) header.stored.has_place = 1;
     }
     const std::string metadata = text_of(tiff, kGdalMetadata);
-    const std::optional<double> scale = item_of(metadata, "scale");
-    const std::optional<double> offset = item_of(metadata, "offset");
+    const std::optional<double> scale = number_in_item(metadata, "scale");
+    const std::optional<double> offset = number_in_item(metadata, "offset");
     header.stored.has_scale = scale || offset ? 1 : 0;
     header.stored.scale = scale.value_or(1.0);
     header.stored.offset = offset.value_or(0.0);
+    header.stored.place = read_geo_keys(tiff);
+    read_height_unit(metadata, header.stored.place);
 }
 
 }  // namespace tex::reader

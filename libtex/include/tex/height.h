@@ -37,12 +37,16 @@ struct DebandReport {
 
 // Heights; white (greater) is high. bumpiness_x and bumpiness_y are the height of value 1.0 in texel widths along each
 // axis. They are finite; 0 is flat, and negative values turn bumps into dents.
+//
+// With `ground`, each row has the bumpiness strength_on_ground(*ground, row), and bumpiness_x and bumpiness_y multiply
+// it: 1 gives the slopes of the ground, and 2 slopes twice as steep.
 struct HeightField {
     Plane<float> height;
     float bumpiness_x = 1.0f;
     float bumpiness_y = 1.0f;
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
+    std::optional<Ground> ground = {};
 };
 
 // Strength from units, as texel widths for the height of value 1.0 (Strength::x, Strength::y).
@@ -61,6 +65,24 @@ struct Strength {
 // Value 1.0 is `r` texture widths high, texels are square: x = y = r * columns. Clamped to the range of float.
 // Errors: bad_option (r is not finite).
 [[nodiscard]] TEX_API Result<Strength> strength_from_uv(Extent extent, double r);
+
+// The size of a texel of this row on the ground, in metres. With latitudes (Snyder, Map Projections: A Working Manual,
+// USGS 1987, 4-18 to 4-21), for the ellipsoid of radii a and b, e^2 = 1 - b^2 / a^2:
+//
+//     width  = dlon a cos(lat) / sqrt(1 - e^2 sin^2(lat))          height = dlat a (1 - e^2) / (1 - e^2 sin^2(lat))^1.5
+//
+// The same bits on every machine. Precondition: the fields of `ground` are finite, and those that must be are above 0.
+struct TexelSize {
+    double width = 1.0;
+    double height = 1.0;
+};
+[[nodiscard]] TEX_API TexelSize texel_size(const Ground& ground, double row);
+
+// The latitude of the middle of a row, in degrees; 0 with GroundUnit::metre.
+[[nodiscard]] TEX_API double latitude_of(const Ground& ground, double row);
+
+// The strength that gives a row of heights the slopes of the ground: height_metres / texel_size(). At most 2^20.
+[[nodiscard]] TEX_API Strength strength_on_ground(const Ground& ground, double row);
 
 // Which value of a texel is its height.
 enum class HeightChannel {
@@ -124,8 +146,10 @@ struct HeightReport {
     // With terrain_rgb and terrarium: texels lower than -12000 m or higher than 9000 m. With rg16 and gr16: those with
     // R = G, as all texels of a grey picture have.
     std::int64_t implausible_texels = 0;
-    bool stored = false;  // as Image::stored
-    std::string remark;   // as Image::remark
+    bool stored = false;                // as Image::stored
+    std::string remark;                 // as Image::remark
+    std::optional<Ground> ground = {};  // as Image::ground, if the heights are in a unit: see height_field()
+    std::string ground_remark = {};     // as Image::ground_remark
 };
 
 // The heights of a picture, and what was found on the way.
@@ -133,7 +157,9 @@ struct PictureHeights : HeightField {
     HeightReport report;
 };
 
-// Makes a height field of strength 1 from a picture.
+// Makes a height field of strength 1 from a picture. If the picture lies on the ground (Image::ground), and its heights
+// are numbers and not fractions of a range, the field does too: its slopes are then those of the ground. Reset
+// HeightField::ground to give the field a bumpiness in texel widths.
 //
 // Channel: see HeightChannel. A picture with planes R, G and B (or red, green and blue, in any case) is coloured; a
 // picture of any other single plane, or of one plane and A, is grey. In an EXR file with other names, the only plane

@@ -97,9 +97,10 @@ struct BakeFileOptions {
     ReadOptions read;
     ColorOptions color;
     HeightOptions heights;  // wrap_x and wrap_y also apply to the height field
-    // The bumpiness for a map of this extent. Empty: what the file of heights states, as those of integrate-normals do,
-    // or 1. Must not throw.
+    // The bumpiness for a map of this extent. Empty: what the file of heights states, as those of integrate-normals do;
+    // or else the slopes of the ground, if the file states the size of a texel (Image::ground); or 1. Must not throw.
     std::function<Strength(Extent)> strength;
+    float vertical_scale = 1.0f;  // multiplies the strength, wherever it comes from; finite
     // The strength at which 99 % of the slopes are at most 1 (45 degrees), to three digits, instead of `strength`; 1 if
     // all heights are equal. The file is read once more before, and heights are debanded and filled twice.
     bool auto_strength = false;
@@ -128,10 +129,13 @@ struct BakeFileReport {
     int left_out = 0;       // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
     HeightReport heights;
-    Strength strength;              // with which it was baked
-    bool is_stated = false;         // the file states this strength
-    float usual_slope = 0.0f;       // the 99th percentile of the slopes of the base level, or of some rows of it
-    float auto_strength = 0.0f;     // what BakeFileOptions::auto_strength would find, or has found; 0: all is flat
+    Strength strength;         // with which it was baked; on the ground, that of the middle row
+    bool is_stated = false;    // the file states this strength
+    bool on_ground = false;    // it is that of HeightReport::ground
+    float usual_slope = 0.0f;  // the 99th percentile of the slopes of the base level, or of some rows of it
+    // What BakeFileOptions::auto_strength would find, or has found; on the ground, the vertical_scale that would do the
+    // same; 0: all is flat.
+    float auto_strength = 0.0f;
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
@@ -339,11 +343,12 @@ struct MapRead {
 struct StepsReport {
     Extent extent;  // of the base level
     int levels = 1;
-    int left_out = 0;          // larger levels, which max_side leaves out
-    std::size_t bytes = 0;     // of all outputs
-    PackOptions pack;          // of `output`
-    HeightReport heights;      // if the first step bakes
-    Strength strength;         // as in BakeFileReport, if the first step bakes
+    int left_out = 0;       // larger levels, which max_side leaves out
+    std::size_t bytes = 0;  // of all outputs
+    PackOptions pack;       // of `output`
+    HeightReport heights;   // if the first step bakes
+    Strength strength;      // this and the next as in BakeFileReport, if the first step bakes
+    bool on_ground = false;
     float usual_slope = 0.0f;  // this and the next two as in BakeFileReport, if the only step bakes
     float auto_strength = 0.0f;
     std::int64_t steep_texels = 0;  // maps of floats hold all slopes

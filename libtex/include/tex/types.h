@@ -308,6 +308,36 @@ private:
     std::shared_ptr<T> rows_;
 };
 
+// What the size of a texel on the ground is measured in.
+enum class GroundUnit {
+    metre,
+    degree,    // of longitude and latitude
+    mercator,  // metres of Web Mercator (EPSG:3857), which are longer than those of the ground away from the equator
+};
+
+inline constexpr Named<GroundUnit> kGroundUnitNames[] = {
+    {GroundUnit::metre, "metre", "metres"},
+    {GroundUnit::degree, "degree", "degrees of longitude and latitude"},
+    {GroundUnit::mercator, "mercator", "metres of Web Mercator"},
+};
+
+// Where the texels of an elevation model lie, as far as slopes depend on it. texel_size() turns it into metres.
+struct Ground {
+    GroundUnit unit = GroundUnit::metre;
+    double width = 1.0;  // of a texel, above 0
+    double height = 1.0;
+    // The middle of row 0: the latitude in degrees, or the northing in metres of Mercator. Not used with metres.
+    double north = 0.0;
+    bool north_up = true;  // row 0 is the northernmost one
+    // The ellipsoid: WGS 84, unless the file has another one, such as that of the Moon. Metres.
+    double equator_radius = 6378137.0;
+    double pole_radius = 6356752.314245;
+    double height_metres = 1.0;    // of the height 1: 0.3048 if heights are in feet
+    bool has_height_unit = false;  // the file states it; else heights are taken as metres
+
+    friend bool operator==(const Ground&, const Ground&) = default;
+};
+
 // How a file stored the values before they were converted to float.
 enum class SampleKind { unorm, snorm, floating };
 
@@ -339,6 +369,10 @@ struct Image {
     double offset = 0.0;
 
     std::string remark;  // what the reader had to find out, such as the extent of a file without a header, or empty
+
+    // The size of a texel on the ground, if the file states it: GeoTIFF, HGT, ESRI grids, world files.
+    std::optional<Ground> ground;
+    std::string ground_remark;  // what was assumed about it, or why it could not be used, or empty
 
     [[nodiscard]] Extent extent() const { return planes.empty() ? Extent{} : planes.front().extent(); }
     // The index of the plane called `name` (exact), or -1.

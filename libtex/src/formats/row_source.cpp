@@ -10,6 +10,7 @@
 #include "blocks/extent.h"
 #include "formats/file_types.h"
 #include "formats/file_values.h"
+#include "formats/ground.h"
 #include "formats/normal_mark.h"
 #include "formats/size_limits.h"
 #include "threads/no_throw.h"
@@ -95,8 +96,13 @@ Result<Image> read_image(InputFile& file, const ReadOptions& options) {
             if (!texture) return texture.error();
             return decode(*texture, 0);
         }
-        Result<Image> image = read_all(open_rows(file, options));
+        Result<std::unique_ptr<RowSource>> rows = open_rows(file, options);
+        if (!rows) return rows.error().of(file.path());
+        Result<Image> image = (*rows)->read_all();
         if (!image) return image.error().of(file.path());
+        GroundFound found = ground_of(**rows, file);
+        image->ground = found.ground;
+        image->ground_remark = std::move(found.remark);
         return image;
     });
 }

@@ -36,9 +36,10 @@ float bumpiness(float value, int texels) { return texels > 1 ? value : 0.0f; }
 float step(const Gradient& gradient) { return !gradient.is_difference() || gradient.forward ? 1.0f : 0.5f; }
 
 // What heights are multiplied by, and bumpiness divided by, so that no finite height is limited. Bumpiness above 2^40
-// could make slopes of heights so small that scaling would round them.
+// could make slopes of heights so small that scaling would round them. The ground multiplies it by up to 2^20.
 float height_scale(const HeightFieldHead& head) {
-    return std::max(std::abs(head.bumpiness_x), std::abs(head.bumpiness_y)) <= 0x1p40f ? kHeightScale : 1.0f;
+    const float most = head.ground ? 0x1p20f : 0x1p40f;
+    return std::max(std::abs(head.bumpiness_x), std::abs(head.bumpiness_y)) <= most ? kHeightScale : 1.0f;
 }
 
 }  // namespace
@@ -57,9 +58,11 @@ Gradient gradient_of(const BakeOptions& options) {
 }
 
 BakeRows::BakeRows(Extent extent, RowOf heights, const Gradient& gradient, const HeightFieldHead& head, int first)
-    : extent_(extent), gradient_(gradient),
-      scale_x_(step(gradient) * bumpiness(head.bumpiness_x, extent.width) / height_scale(head)),
-      scale_y_(step(gradient) * bumpiness(head.bumpiness_y, extent.height) / height_scale(head)),
+    : extent_(extent), gradient_(gradient), ground_(head.ground),
+      ground_row_(head.ground_row), scale_{step(gradient) * bumpiness(head.bumpiness_x, extent.width) /
+                                               height_scale(head),
+                                           step(gradient) * bumpiness(head.bumpiness_y, extent.height) /
+                                               height_scale(head)},
       rows_(extent, std::move(heights), head.wrap_x, head.wrap_y, gradient.radius, 2 * gradient.radius + 1,
             height_scale(head)),
       next_(first - gradient.radius) {
@@ -94,18 +97,25 @@ void BakeRows::prepare(int j) {
     derive_column(window_rows_.data(), gradient_.derivative.data(), radius, lead + extent_.width + radius, dv_.row(0));
 }
 
+Strength BakeRows::scale_of(int j) const {
+    if (!ground_) return scale_;
+    const Strength strength = strength_on_ground(*ground_, wrap_around(j, extent_.height) + ground_row_);
+    return {scale_.x * strength.x, scale_.y * strength.y};
+}
+
 // Makes `count` texels of row j from `first` on. Rows of derivatives are moved on to the first texel, and back.
 void BakeRows::make(int j, int first, int count, NormalRow out) {
+    const Strength scale = scale_of(j);
     if (gradient_.is_difference()) {
         const float* row = rows_.row(j) + first;
         const float* left = gradient_.forward ? row : row - 1;
         const float* down = gradient_.forward ? row : rows_.row(j + 1) + first;
-        normals_by_difference(left, row + 1, down, rows_.row(j - 1) + first, scale_x_, scale_y_, count, out);
+        normals_by_difference(left, row + 1, down, rows_.row(j - 1) + first, scale.x, scale.y, count, out);
         return;
     }
     for (const float*& row : window_du_) row += first;
     normals_by_smoothing(window_du_.data(), dv_.row(0) + rows_.lead() + first, gradient_.smoothing.data(),
-                         gradient_.radius, scale_x_, scale_y_, count, out);
+                         gradient_.radius, scale.x, scale.y, count, out);
     for (const float*& row : window_du_) row -= first;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include <tex/bake.h>
 
@@ -40,7 +41,17 @@ struct HeightFieldHead {
     float bumpiness_y = 1.0f;
     Wrap wrap_x = Wrap::repeat;
     Wrap wrap_y = Wrap::repeat;
+    std::optional<Ground> ground = {};  // as HeightField::ground
+    int ground_row = 0;                 // the row of the ground that row 0 is
 };
+
+// The strength of a field, of the row in its middle.
+[[nodiscard]] inline Strength middle_strength(const HeightFieldHead& head, Extent extent) {
+    const Strength given{head.bumpiness_x, head.bumpiness_y};
+    if (!head.ground) return given;
+    const Strength strength = strength_on_ground(*head.ground, 0.5 * (extent.height - 1));
+    return {given.x * strength.x, given.y * strength.y};
+}
 
 class BakeRows {
 public:
@@ -61,11 +72,14 @@ private:
     void fetch();
     void prepare(int j);
     void make(int j, int first, int count, NormalRow out);
+    // What row j's differences are multiplied by.
+    [[nodiscard]] Strength scale_of(int j) const;
 
     const Extent extent_;
     const Gradient& gradient_;
-    const float scale_x_;
-    const float scale_y_;
+    const std::optional<Ground> ground_;
+    const int ground_row_;
+    const Strength scale_;  // without the ground
     HeightRows rows_;
     int next_;
     // Used by all kernels except differences. The window of rows is processed in two ways: the derivative along the row

@@ -73,7 +73,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const auto* const terrain = dynamic_cast<const TerrainRows*>(heights->rows.get());
     HeightCounts counts = heights->counts;
     if (terrain != nullptr) (counts = before) += terrain->counts();
-    report.heights = report_of(counts, heights->deband, heights->stored);
+    report.heights = report_of(*heights, counts);
     report.heights.remark =
         remark_with_counts(*heights, terrain != nullptr ? terrain->remark() : heights->remark, counts);
     if (options.accept) {
@@ -82,8 +82,9 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> done = targets.commit(); !done) return done.error();
     report.bytes = targets.bytes(Content::normals);
     report.rdo = targets.rdo();
-    report.strength = {baked.head.bumpiness_x, baked.head.bumpiness_y};
+    report.strength = middle_strength(baked.head, extent);
     report.is_stated = !options.strength && heights->stated;
+    report.on_ground = baked.head.ground.has_value();
     report.usual_slope = usual->slope();
     report.auto_strength = usual->strength_for_one();
     report.slopes = slopes.range();

@@ -305,9 +305,7 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
         if (heights.last)
             rows.last = &flow.add<BlurStage>(across, std::max(0, extent.height - gradient.radius), weights);
     }
-    HeightFieldHead head = head_of(heights.window ? heights.window->tile : extent, options, heights.stated);
-    head.wrap_x = heights.options.wrap_x;
-    head.wrap_y = heights.options.wrap_y;
+    const HeightFieldHead head = head_of(heights, options);
     const auto takes = [](const std::optional<OtherData>& other) { return other && other->heights; };
     const OtherPlanes beside{takes(options.others.blue), takes(options.others.alpha), takes(options.others.length)};
     return {&flow.add<BakeStage>(rows, gradient, head, heights.window, beside), head};

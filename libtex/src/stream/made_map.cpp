@@ -144,14 +144,16 @@ public:
     [[nodiscard]] Extent extent(int) const override { return heights_->rows->extent(); }
     void report(StepsReport& report) const override {
         report.strength = strength_;
-        report.heights = report_of(heights_->counts, heights_->deband, heights_->stored);
+        report.on_ground = on_ground_;
+        report.heights = report_of(*heights_, heights_->counts);
         report.heights.remark = remark_with_counts(*heights_, heights_->remark, heights_->counts);
     }
 
 private:
     const Stage& add_normals(Flow& flow, int) override {
         const BakedRows baked = add_bake(flow, *heights_, input_, options_, gradient_);
-        strength_ = {baked.head.bumpiness_x, baked.head.bumpiness_y};
+        strength_ = middle_strength(baked.head, heights_->rows->extent());
+        on_ground_ = baked.head.ground.has_value();
         return given().add_to(flow, *baked.normals);
     }
 
@@ -162,6 +164,7 @@ private:
     std::optional<InputFile> file_;
     std::optional<Heights> heights_;
     Strength strength_;
+    bool on_ground_ = false;
 };
 
 // A map that is unpacked and scaled, each level by itself.

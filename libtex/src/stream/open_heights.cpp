@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "color/color.h"
+#include "formats/ground.h"
+#include "rows/ground.h"
 #include "stream/filled_heights.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
@@ -19,7 +21,7 @@ namespace tex::inline v1 {
 namespace {
 
 // Errors: those of an option that does not fit the picture.
-Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
+Result<void> prepare(const InputFile& file, const BakeFileOptions& options, Heights& heights) {
     const RowSource& rows = *heights.rows;
     if (!options.color.space.empty()) {
         auto linear = linear_rows(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
@@ -36,6 +38,11 @@ Result<void> prepare(const BakeFileOptions& options, Heights& heights) {
     Result<HeightSource> source = find_height_source(facts, options.heights);
     if (!source) return source.error();
     heights.source = *source;
+    if (have_unit(facts, *source) && !heights.linear) {
+        GroundFound found = ground_of(rows, file);
+        heights.ground = found.ground;
+        heights.ground_remark = std::move(found.remark);
+    }
     Result<HeightOptions> with =
         with_no_data(options.heights, facts, heights.source, heights.linear ? &*heights.linear : nullptr);
     if (!with) return with.error();
@@ -78,6 +85,8 @@ Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, co
     heights.stored = (*rows)->heights().stored;
     heights.remark = (*rows)->heights().remark;
     heights.assumes_no_data = (*rows)->heights().assumes_no_data;
+    heights.ground = (*rows)->heights().ground;
+    heights.ground_remark = (*rows)->heights().ground_remark;
     heights.options = options.heights;
     heights.options.wrap_x = heights.window->wrap_x;
     heights.options.wrap_y = heights.window->wrap_y;
@@ -98,9 +107,23 @@ Result<void> find_last_rows(InputFile& file, const BakeFileOptions& options, con
 
 }  // namespace
 
-HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated) {
-    const Strength strength = options.strength ? options.strength(extent) : stated.value_or(Strength());
-    return {strength.x, strength.y, options.heights.wrap_x, options.heights.wrap_y};
+HeightReport report_of(const Heights& heights, const HeightCounts& counts) {
+    HeightReport report = report_of(counts, heights.deband, heights.stored);
+    report.ground = heights.ground;
+    report.ground_remark = heights.ground_remark;
+    return report;
+}
+
+HeightFieldHead head_of(const Heights& heights, const BakeFileOptions& options) {
+    const Extent extent = heights.window ? heights.window->tile : heights.rows->extent();
+    Strength strength = options.strength ? options.strength(extent) : heights.stated.value_or(Strength());
+    strength.x *= options.vertical_scale;
+    strength.y *= options.vertical_scale;
+    HeightFieldHead head{strength.x, strength.y, heights.options.wrap_x, heights.options.wrap_y};
+    if (options.strength || heights.stated) return head;
+    head.ground = heights.ground;
+    head.ground_row = heights.window ? -heights.window->top : 0;
+    return head;
 }
 
 std::string remark_with_counts(const Heights& heights, std::string remark, const HeightCounts& counts) {
@@ -116,7 +139,7 @@ Result<Heights> open_height_rows(InputFile& file, const BakeFileOptions& options
     if (!rows) return rows.error();
     Heights heights;
     heights.rows = std::move(*rows);
-    if (const Result<void> fits = prepare(options, heights); !fits)
+    if (const Result<void> fits = prepare(file, options, heights); !fits)
         return after_all_rows(*heights.rows, file.path(), fits.error());
     return heights;
 }

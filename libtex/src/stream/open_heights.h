@@ -42,6 +42,8 @@ struct Heights {
     std::string remark;                   // as Image::remark
     std::optional<Image> last;            // the last rows, if they are needed first
     std::optional<Strength> stated;       // the strength that the file states
+    std::optional<Ground> ground;         // as HeightReport::ground
+    std::string ground_remark;            // as HeightReport::ground_remark
     std::optional<TerrainWindow> window;  // what the rows are, if the picture is a tile of a terrain
 };
 
@@ -60,7 +62,10 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
 // `remark`, and what to say about missing heights once all of them have been counted.
 std::string remark_with_counts(const Heights& heights, std::string remark, const HeightCounts& counts);
 
-// The strength and the borders of a height field of this extent, whose file may state a strength.
-HeightFieldHead head_of(Extent extent, const BakeFileOptions& options, const std::optional<Strength>& stated);
+// What was found out about heights, of which some have been counted.
+[[nodiscard]] HeightReport report_of(const Heights& heights, const HeightCounts& counts);
+
+// The strength and the borders of a height field, or of the tile in its window.
+HeightFieldHead head_of(const Heights& heights, const BakeFileOptions& options);
 
 }  // namespace tex::inline v1

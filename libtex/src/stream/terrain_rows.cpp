@@ -21,6 +21,14 @@ float height_beyond(const float* row, Wrap wrap, int index, int n) {
     return at.plain() ? inner : inner + static_cast<float>(at.drift) * (row[at.edge] - row[at.other]);
 }
 
+bool are_alike(const std::optional<Ground>& a, const std::optional<Ground>& b) {
+    constexpr double kTolerance = 1e-3;
+    if (!a || !b) return a.has_value() == b.has_value();
+    const auto near = [](double x, double y) { return std::abs(x - y) <= kTolerance * std::max(x, y); };
+    return a->unit == b->unit && near(a->width, b->width) && near(a->height, b->height) &&
+           near(a->height_metres, b->height_metres) && near(a->equator_radius, b->equator_radius);
+}
+
 bool usually_shares_border(Extent extent) {
     const auto is_one = [](int side) {
         const int texels = side - 1;
@@ -56,7 +64,7 @@ std::string TerrainRows::path_of(int right, int down) const {
     return {};
 }
 
-Result<int> TerrainRows::margin(int right, int down, int reach) const {
+Result<int> TerrainRows::margin(int right, int down, int reach) {
     const std::string path = path_of(right, down);
     if (path.empty()) return 0;
     const Result<std::unique_ptr<TileReader>> tile = TileReader::open(path, options_);
@@ -73,7 +81,16 @@ Result<int> TerrainRows::margin(int right, int down, int reach) const {
         return Error{ErrorCode::bad_data, path,
                      "is too small for its terrain: a normal depends on " + std::to_string(reach) +
                          " texels to each side, and this tile or the one beside it has fewer"};
+    compare_ground(**tile);
     return reach;
+}
+
+void TerrainRows::compare_ground(const TileReader& tile) {
+    if (options_.strength || !ground_remark_.empty() || are_alike(center_->heights().ground, tile.heights().ground))
+        return;
+    ground_remark_ = tile.path() +
+                     ", the tile beside it, states another size of its texels or another unit of its "
+                     "heights: the slopes at the border fit neither";
 }
 
 Result<void> TerrainRows::measure(int reach) {
@@ -186,9 +203,12 @@ Result<void> TerrainRows::decode(int first, int count, std::byte* rows) {
 }
 
 std::string TerrainRows::remark() const {
-    if (disagreeing_ == 0) return center_remark_;
-    return std::to_string(disagreeing_) +
-           " heights of the border are not those of the tile beside it, although the tiles share their borders";
+    std::string remark = center_remark_;
+    if (disagreeing_ != 0) {
+        remark = std::to_string(disagreeing_) +
+                 " heights of the border are not those of the tile beside it, although the tiles share their borders";
+    }
+    return remark + (remark.empty() || ground_remark_.empty() ? "" : "; ") + ground_remark_;
 }
 
 Result<void> TerrainRows::finish() {

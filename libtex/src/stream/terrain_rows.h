@@ -45,7 +45,9 @@ private:
     // The path of a neighbour; empty if there is none.
     [[nodiscard]] std::string path_of(int right, int down) const;
     // How many rows or columns of the neighbour are in the window: none if it does not exist. Checks the neighbour.
-    Result<int> margin(int right, int down, int reach) const;
+    Result<int> margin(int right, int down, int reach);
+    // Notes that a neighbour's texels are not as large as those of the tile.
+    void compare_ground(const TileReader& tile);
     Result<void> measure(int reach);
     Result<void> enter_band(int down);
     Result<void> make_row(int j, float* out);
@@ -65,7 +67,7 @@ private:
     int first_invalid_[2] = {};  // column, row; of the tile
     HeightSource center_source_;
     HeightOptions center_options_;  // with the no-data value of the tile
-    std::string center_remark_;
+    std::string center_remark_, ground_remark_;
     std::int64_t disagreeing_ = 0;   // heights of shared columns
     std::string invalid_neighbour_;  // the first one with an invalid height in the window
 };

@@ -77,6 +77,7 @@ float UsualSlope::slope_at_one() const {
 Result<Strength> measure_strength(InputFile& file, const BakeFileOptions& options, const Execution& execution) {
     BakeFileOptions as_one = options;
     as_one.strength = [](Extent) { return Strength{1.0f, 1.0f}; };
+    as_one.vertical_scale = 1.0f;
     const Gradient gradient = gradient_of(options.bake);
     const Execution silent = execution.quiet();
     Result<Heights> heights = open_heights(file, RowOrder::any, as_one, gradient, silent);

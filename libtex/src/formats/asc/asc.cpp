@@ -19,7 +19,7 @@
 namespace tex::inline v1 {
 namespace {
 
-// The words of the header. Those that say where the grid is are read and not used.
+// The words of the header.
 enum AscKey {
     kColumns,
     kRows,
@@ -89,12 +89,21 @@ Result<Extent> asc_extent(const InputFile& file, const AscHeader& header, const 
     return fits ? extent : Result<Extent>(fits.error());
 }
 
-std::string cell_remark(const AscHeader& header) {
-    constexpr double kTolerance = 1e-3;
-    if (!header[kCellWidth] || !header[kCellHeight]) return {};
-    const double width = std::abs(*header[kCellWidth]), height = std::abs(*header[kCellHeight]);
-    if (std::abs(width - height) <= kTolerance * std::max(width, height)) return {};
-    return "the cells of the grid are not square (dx is not dy), but slopes are those of square texels";
+// Where the cells are; rows come from the north.
+GridPlace place_of(const AscHeader& header, Extent extent) {
+    GridPlace place;
+    const std::optional<double>&width = header[kCellWidth] ? header[kCellWidth] : header[kCellSize],
+          &height = header[kCellHeight] ? header[kCellHeight] : header[kCellSize];
+    if (!width || !height) return place;
+    place.model = GridModel::numbers;
+    place.column_east = std::abs(*width);
+    place.row_north = -std::abs(*height);
+    const auto first = [&](AscKey corner, AscKey center, double step) {
+        return header[center] ? *header[center] : header[corner].value_or(0.0) + 0.5 * step;
+    };
+    place.east = first(kXCorner, kXCenter, place.column_east);
+    place.north = first(kYCorner, kYCenter, -place.row_north) - place.row_north * (extent.height - 1);
+    return place;
 }
 
 class AscRows final : public RowSource {
@@ -102,9 +111,8 @@ public:
     AscRows(WordReader words, const AscHeader& header, Extent extent) : words_(std::move(words)) {
         describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float));
         describe_samples(SampleKind::floating, 32);
-        describe_stored({.kind = 3, .bits = 32, .has_place = 1});
+        describe_stored({.kind = 3, .bits = 32, .has_place = 1, .place = place_of(header, extent)});
         describe_no_data(float_of(header[kNoDataValue].value_or(kUsualNoData)), !header[kNoDataValue].has_value());
-        describe_remark(cell_remark(header));
     }
 
     Result<void> decode(int first, int count, std::byte* rows) override {

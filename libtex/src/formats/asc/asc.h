@@ -22,7 +22,7 @@ bool may_be_asc(std::span<const std::byte> head);
 
 // Opens a grid: one channel, Y, floating. The words of the header come in any order and case: ncols and nrows, which
 // must be there; xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy; NODATA_value, by default -9999
-// (as ArcGIS has it; GDAL takes such texels as heights). A remark says if cells are not square. Heights are separated
+// (as ArcGIS has it; GDAL takes such texels as heights). Heights are separated
 // by any blanks and line ends, and are rounded to floats. Rows come from the top, in their order. The file must outlive
 // the rows.
 //

@@ -24,10 +24,18 @@ enum BilKey {
     kBilBandRow,
     kBilTotalRow,
     kBilNoData,
+    kBilEast,
+    kBilNorth,
+    kBilWidth,
+    kBilHeight,
+    kBilSize,
+    kBilWest,
+    kBilSouth,
     kBilKeyCount
 };
-constexpr std::string_view kBilKeys[] = {"nrows",     "ncols",     "nbands",       "nbits",         "pixeltype",
-                                         "byteorder", "skipbytes", "bandrowbytes", "totalrowbytes", "nodata"};
+constexpr std::string_view kBilKeys[] = {
+    "nrows",  "ncols",  "nbands", "nbits", "pixeltype", "byteorder", "skipbytes", "bandrowbytes", "totalrowbytes",
+    "nodata", "ulxmap", "ulymap", "xdim",  "ydim",      "cellsize",  "xllcorner", "yllcorner"};
 
 struct BilWords {
     std::string path;
@@ -112,6 +120,22 @@ Result<std::int64_t> pitch_in(const BilWords& words, std::int64_t row) {
     return count_in(words, kBilTotalRow, *band, *band);
 }
 
+// Where the texels are: in the words of BIL, the middle of the first one; in those of GridFloat, the corner in the
+// southwest. Nothing without a size that is a number.
+GridPlace place_in(const BilWords& words, Extent extent) {
+    const auto number = [&](BilKey key) { return number_in(words[key]); };
+    const std::optional<double> size = number(kBilSize), width = number(kBilWidth), height = number(kBilHeight);
+    GridPlace place;
+    if (!size && !(width && height)) return place;
+    place.model = GridModel::numbers;
+    place.column_east = size ? *size : *width;
+    place.row_north = -(size ? *size : *height);
+    const std::optional<double> east = number(kBilEast), north = number(kBilNorth);
+    place.east = east ? *east : number(kBilWest).value_or(0.0) + 0.5 * place.column_east;
+    place.north = north ? *north : number(kBilSouth).value_or(0.0) - place.row_north * (extent.height - 0.5);
+    return place;
+}
+
 }  // namespace
 
 Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
@@ -138,6 +162,7 @@ Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std:
 
     RawTexels place{.extent = *extent, .samples = *samples, .first = *skip, .has_place = true};
     place.pitch = static_cast<std::size_t>(*pitch);
+    place.place = place_in(words, *extent);
     if (no_data) place.no_data = float_of(*no_data);
     if (words[kBilByteOrder].empty() && samples->bits > 8)
         place.remark =

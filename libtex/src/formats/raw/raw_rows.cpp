@@ -34,7 +34,8 @@ public:
         describe_samples(samples_.kind, samples_.bits);
         describe_stored({.kind = tiff_kind(samples_.kind),
                          .bits = static_cast<std::uint32_t>(samples_.bits),
-                         .has_place = place.has_place ? 1u : 0u});
+                         .has_place = place.has_place ? 1u : 0u,
+                         .place = place.place});
         describe_no_data(no_data_number_ ? std::optional(fraction(*no_data_number_)) : std::nullopt);
         describe_remark(std::move(place.remark));
     }

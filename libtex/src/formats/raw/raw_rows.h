@@ -30,6 +30,7 @@ struct RawTexels {
     bool has_place = false;             // on the Earth, so that the samples have a unit (StoredSamples::has_place)
     std::optional<float> no_data = {};  // as the file stores it
     std::string remark = {};            // RowSource::remark()
+    GridPlace place = {};               // StoredSamples::place
 
     // The number of bytes up to the last texel. Does not overflow: at most 2^41 texels of 4 bytes, and a pitch that the
     // caller has checked.

@@ -50,7 +50,7 @@ inline constexpr int kInputDescriptor = 4;
 inline constexpr int kProgressDescriptor = 5;
 inline constexpr int kReaderArguments = 7;  // with the name of the program
 
-inline constexpr std::uint32_t kReaderMagic = 0x36786574;  // "tex6": changes with the layout below
+inline constexpr std::uint32_t kReaderMagic = 0x37786574;  // "tex7": changes with the layout below
 inline constexpr int kMaxReaderChannels = 64;
 inline constexpr std::size_t kReaderDataOffset = 8192;
 
