@@ -129,7 +129,7 @@ TEST(Ground, AHillOnTheEllipsoidHasItsSlopes) {
     }
 }
 
-// The same hill on Web Mercator, whose rows are not equally far apart in latitude.
+// One hill on Web Mercator, whose rows are not equally far apart in latitude.
 TEST(Ground, WebMercatorIsNotTakenForMetres) {
     constexpr int kSide = 257;
     constexpr double kA = 6378137.0, kStep = 40.0;

@@ -24,7 +24,7 @@ struct GroundFound {
 // of a world file beside it. Nothing is beside a stream or bytes in memory. May throw std::bad_alloc.
 [[nodiscard]] GroundFound ground_of(const RowSource& rows, const InputFile& file);
 
-// As ground_of(), for a grid and what a .prj file says of it (or nothing).
+// The ground of a grid, and of what a .prj file says of it (or nothing).
 [[nodiscard]] GroundFound ground_of(const GridPlace& place, Extent extent, const std::string& projection);
 
 // The grid of a world file: six numbers, of which the first four are the steps of a column and a row, and the last two
