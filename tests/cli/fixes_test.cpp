@@ -149,7 +149,7 @@ TEST_F(Fixes, RepairEveryBrokenSample) {
             EXPECT_EQ(found.value("advice", ""), find_rule(id)->fix);
             continue;
         }
-        if (id == "N112") continue;  // too small to show which way green points; see below
+        if (id == "N112") continue;            // too small to show which way green points; see below
         if (name.ends_with(".glb")) continue;  // ModelOutputs runs the fixes of models
         repair(name, id, options[id]);
         repaired.insert(id);
