@@ -77,7 +77,8 @@ protected:
         scratch_.write("normals.toml", manifest);
         scratch_.write("art/normals.toml", manifest);
         make("bake-normals bricks.png -o bricks_n.png");
-        for (const char* picture : {"rock_n.png", "rock.png", "n.png", "wall.png", "directx/a.png"})
+        for (const char* picture :
+             {"rock_n.png", "rock.png", "n.png", "wall.png", "directx/a.png", "art/stone/b_n.png"})
             fs::copy_file(scratch_.path("bricks_n.png"), scratch_.path(picture));
         make("bake-normals grain_h.png -o grain.png");
         make("bake-normals bricks.png -o bricks.exr");

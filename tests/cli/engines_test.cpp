@@ -244,6 +244,7 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
 TEST(EnginesPage, EveryCommandOfTheRecipesRuns) {
     const Scratch scratch;
     scratch.add_sample("bricks.png", "bricks.png");
+    scratch.add_sample("broken/N805-mirrored-and-double-sided.glb", "scene.glb");
     std::ifstream page(TEX_BINARY_DIR "/man/normal-maps-engines.7");
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     ASSERT_NE(text, "");

@@ -36,6 +36,7 @@ HeightField read_heights(const std::string& path) {
     options.fill_invalid = true;
     if (path.find("nodata") != std::string::npos) options.no_data = -9999.0f;
     HeightField field = std::move(height_field(read_image(path).value(), options).value());
+    field.ground.reset();
     float low = field.height.at(0, 0), high = low;
     for (int j = 0; j < field.height.extent().height; ++j) {
         const float* const row = field.height.row(j);
