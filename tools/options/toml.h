@@ -7,6 +7,8 @@
 
 #pragma once
 
+#include <cstdint>  // toml++'s tables of letters need it
+
 namespace tex::cli {
 struct BrokenToml {};
 [[noreturn]] inline void refuse_toml() { throw BrokenToml(); }

@@ -147,13 +147,13 @@ private:
         // With those of other sides within 60 degrees: smooth surfaces face several sides in a cell.
         [[nodiscard]] Point normal(std::size_t side) const {
             const Point own = unit_of(normals[side]);
-            Point sum{};
+            Point near{};
             for (const Point& other : normals) {
                 const Point n = unit_of(other);
                 if (n[0] * own[0] + n[1] * own[1] + n[2] * own[2] < 0.5) continue;
-                for (std::size_t c = 0; c < 3; ++c) sum[c] += other[c];
+                for (std::size_t c = 0; c < 3; ++c) near[c] += other[c];
             }
-            return unit_of(sum);
+            return unit_of(near);
         }
     };
 
