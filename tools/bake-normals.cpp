@@ -167,7 +167,8 @@ void BakeNormals::note_strength(cli::Job& job, const Report& done) const {
     if (given.measured && job.task.output != "-")
         job.say(fmt::format("{}: --bumpiness auto is {}\n", job.task.input, done.strength.x));
     const Extent extent{done.extent.width << done.left_out, done.extent.height << done.left_out};
-    cli::note_ground(job, done.heights, {done.on_ground, given.given_name(), given.vertical_scale, extent});
+    const bool repeats = !command.given("--wrap") && !files.tiles;
+    cli::note_ground(job, done.heights, {done.on_ground, given.given_name(), given.vertical_scale, extent, repeats});
 }
 
 // Slopes that nobody sees.

@@ -113,6 +113,10 @@ TEST_F(OnTheGround, MetresHaveTheBytesOfTheirWorldSize) {
     scratch_.write("h.prj", kFeet);
     EXPECT_EQ(bake({"h.asc", "-o", "n.exr", "--vertical-scale", "3"}).out,
               "h.asc: 9.75 x 9.75 m a texel, heights in metres, 3 times as steep\n");
+    // Nobody asks for a terrain that repeats.
+    EXPECT_EQ(run(scratch_, "bake-normals", {"h.asc", "-o", "n.exr"}).out,
+              "h.asc: 9.75 x 9.75 m a texel, heights in metres; without --wrap clamp, heights repeat beyond the "
+              "border\n");
     EXPECT_EQ(baked({"h.asc", "--depfile", "d"}),
               baked({"h.pfm", "--height-range", "1", "--world-size", "87.7824x58.5216"}));
     EXPECT_EQ(scratch_.read("d"), "x.exr: \\\n  h.asc \\\n  h.prj\n");

@@ -62,6 +62,7 @@ void note_ground(Job& job, const HeightReport& heights, const GroundUse& use) {
     std::string line = fmt::format("{}: {}, {}", file, texel, heights_text(ground));
     if (use.vertical_scale != 1.0f) line += fmt::format(", {} times as steep", use.vertical_scale);
     if (!heights.ground_remark.empty()) line += "; " + heights.ground_remark;
+    if (use.repeats) line += "; without --wrap clamp, heights repeat beyond the border";
     job.say(line + "\n");
 }
 

@@ -19,7 +19,8 @@ struct GroundUse {
     bool is_used = false;  // the slopes are those of the ground
     std::string instead;   // else the option that was used; empty if there is none
     float vertical_scale = 1.0f;
-    Extent extent;  // of the picture
+    Extent extent;         // of the picture
+    bool repeats = false;  // heights repeat beyond the border, which nobody asked for
 };
 
 // Prints it, and writes it into the job's report.
