@@ -42,7 +42,7 @@ select_files() { printf '%s\n' "${files[@]}" | grep -E "$1" || true; }
 stem() { basename "$1" | sed 's/\.[a-z0-9]*$//'; }
 
 # -- the tree -----------------------------------------------------------------------------------------------
-top=' CMakeLists.txt CMakePresets.json README.md LICENSE CHANGELOG.md CONTRIBUTING.md RECIPES.md SECURITY.md'
+top=' CMakeLists.txt CMakePresets.json README.md LICENSE CHANGELOG.md CONTRIBUTING.md SECURITY.md'
 top+=' .clang-format .clang-tidy .gitignore .ci libtex tools tests samples man findings '
 for name in $(printf '%s\n' "${files[@]}" | cut -d/ -f1 | sort -u); do
     case $top in *" $name "*) ;; *) complain "$name does not belong at the top level" ;; esac
@@ -50,8 +50,8 @@ done
 
 # -- folders include each other in one direction --------------------------------------------------------------
 if graph=$(tests/graph.sh 2>&1); then
-    diff <(sed -n '/^batch: /,/^```/p' RECIPES.md | sed '$d') - <<<"$graph" >&2 ||
-        complain 'the graph of folders in RECIPES.md is not that of tests/graph.sh'
+    diff <(sed -n '/^batch: /,/^```/p' tests/RECIPES.md | sed '$d') - <<<"$graph" >&2 ||
+        complain 'the graph of folders in tests/RECIPES.md is not that of tests/graph.sh'
 else
     complain "folders include each other in a circle"$'\n'"$graph"
 fi

@@ -72,7 +72,7 @@ std::vector<Verb> verbs() {
     static const tex::Texture packed = texture();
     static const tex::MeshPart part = quad();
     static const tex::Plane<float> rough(kExtent, 0.5f);
-    // Functions that take their input give it back to nobody: each run gets a map of its own, from the heap.
+    // Functions that take their input do not return it, so each run gets a new map from the heap.
     static std::vector<tex::NormalMap> given;
     static std::vector<tex::HeightField> fields;
     static std::vector<std::vector<tex::Layer>> layers;

@@ -179,7 +179,7 @@ TEST_F(ModelOutput, OnlyTheMaterialGetsThePicture) {
     const auto image_of = [&](const json& slot) { return after.image(after.source_of_slot(slot)); };
     EXPECT_EQ(image_of(after.document["materials"][0]["normalTexture"]), "oldimage!");
     EXPECT_EQ(image_of(after.document["materials"][1]["normalTexture"]), "for b");
-    changes("m.glb", "out.glb", "c", "for c");  // a texture of its own, and an image of all
+    changes("m.glb", "out.glb", "c", "for c");  // it shares no texture, but its image
     after = chunks("out.glb");
     EXPECT_EQ(image_of(after.document["materials"][1]["normalTexture"]), "oldimage!");
     EXPECT_EQ(

@@ -61,7 +61,7 @@ bool decode_webp(const Task& task, ReaderHeader& header) {
 }
 
 bool encode_webp(const Task& task, ReaderHeader& header) {
-    constexpr int kSmallest = 6;  // of 0 to 9; 9 takes 2 to 30 times as long for 1 % fewer bytes
+    constexpr int kSmallest = 6;  // of 0 to 9; 9 took 8 and 36 times as long on two maps, for 0.7 % fewer bytes at most
     ReaderHeader picture;
     if (!read_input(0, &picture, sizeof picture))
         return refuse(header, ErrorCode::bad_data, "no picture was handed over");

@@ -382,7 +382,7 @@ struct StepsReport {
 // buffer, in a data URI or in a file. Bytes that follow it in a buffer move by a multiple of 8.
 //
 // An image, a texture or bytes of a buffer that something else uses, too (a colour of the material, a material whose
-// map stays), are left as they are, and the maps get one of their own: in GLB in the binary chunk, if there is one. A
+// map stays), are left as they are, and new ones are added for the maps: in GLB in the binary chunk, if there is one. A
 // texture names the new picture as its source, whatever extension named the old one (KHR_texture_basisu,
 // MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif). An extension that no texture uses any more leaves the lists of
 // the extensions.
