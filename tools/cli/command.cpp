@@ -250,6 +250,18 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
     return std::nullopt;
 }
 
+void Command::drop_table() {
+    std::deque<Row> all;
+    all.swap(rows_);
+    checks_.clear();
+    for (Row& row : all) {
+        if (row.given.empty()) continue;
+        Row& kept = rows_.emplace_back();
+        kept.names = std::move(row.names);
+        kept.given = std::move(row.given);
+    }
+}
+
 bool Command::given(std::string_view name) const {
     const Row* row = find_row(rows_, name);
     return row != nullptr && !row->given.empty();

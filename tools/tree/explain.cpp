@@ -158,7 +158,7 @@ std::string task_text(const BuildTask& task, const Recipe& recipe, Console& cons
     if (!task.refusal.empty()) text += "  cannot be made: " + task.refusal + "\n";
     for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
         text += fmt::format("  {}:\n", rule.steps[k].command);
-        text += settings_text(rule.steps[k], nullptr, recipe.before()[k].program->command, nullptr);
+        text += settings_text(rule.steps[k], nullptr, recipe.table_of(rule.steps[k].command), nullptr);
     }
     for (const std::string& needed : recipe.files()) text += fmt::format("  reads {}\n", printable(needed));
     for (const std::string& needed : recipe.own_files(task.input, recipe.path_to(task.input)))
@@ -172,7 +172,7 @@ std::string task_text(const BuildTask& task, const Recipe& recipe, Console& cons
                                   ? recipe.first_task(*last.converter, recipe.path_to(task.input), name)
                                   : last.converter->task_for("between.exr", name, task.input),
                               console};
-        text += settings_text(rule.steps.back(), &rule.outputs[k], last.program->command, &decided);
+        text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.table_of(rule.steps.back().command), &decided);
         text += "  the same by hand:\n";
         for (const std::string& line : recipe.command_lines(task.input, k)) text += "    " + line + "\n";
     }

@@ -92,7 +92,7 @@ std::shared_ptr<Program>& ProgramPool::program_for(const std::string& step, cons
 
 Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root,
                ProgramPool& pool, Console& console)
-    : manifest_(manifest), rule_(rule), number_(number), root_(root) {
+    : manifest_(manifest), rule_(rule), number_(number), root_(root), pool_(pool) {
     for (const std::string& pattern : rule.match) {
         if (has_grid(pattern)) {
             grids_.push_back(pattern);
@@ -104,10 +104,10 @@ Recipe::Recipe(const Manifest& manifest, const RuleSettings& rule, int number, c
     for (const std::string& pattern : rule.exclude) exclude_.emplace_back(pattern);
     check_ = std::make_unique<TextureCheck>(manifest, rule.check, console);
     for (std::size_t k = 0; k + 1 < rule.steps.size(); ++k) {
-        before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, pool, console));
+        before_.push_back(ready(rule.steps[k], nullptr, false, kBetween, console));
         check_order(rule.steps[k], before_.back(), k, console);
     }
-    for (const OutputSettings& output : rule.outputs) add_output(output, pool, console);
+    for (const OutputSettings& output : rule.outputs) add_output(output, console);
     check_tiles(before_.empty() ? outputs_.front().last : before_.front());
     find_files();
 }
@@ -194,8 +194,8 @@ std::string_view Recipe::format_between(const std::vector<std::string>& argument
 
 // The program that has read these arguments.
 std::shared_ptr<Program> Recipe::parsed(const StepSettings& step, std::vector<std::string> line, const std::string& out,
-                                        ProgramPool& pool, Console& console) const {
-    std::shared_ptr<Program>& program = pool.program_for(step.command, line);
+                                        Console& console) const {
+    std::shared_ptr<Program>& program = pool_.program_for(step.command, line);
     if (program) return program;
     const ProgramRow* const row = find_program(step.command + kSuffix);
     std::shared_ptr<Program> made = row->make(*row);
@@ -205,14 +205,15 @@ std::shared_ptr<Program> Recipe::parsed(const StepSettings& step, std::vector<st
     for (const std::string& argument : line) pointers.push_back(argument.c_str());
     made->command.forbid_answers();
     std::ignore = made->command.parse(pointers, console);
+    made->command.drop_table();
     return program = std::move(made);
 }
 
 // `out` is the name of an output. Its extension says the file type; without one, it gets that of the engine, or DDS.
 ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* output, bool is_last, const std::string& out,
-                           ProgramPool& pool, Console& console) const {
+                           Console& console) const {
     ReadyCommand command;
-    const Command& table = pool.table_of(step.command);
+    const Command& table = pool_.table_of(step.command);
     std::vector<std::string> groups = groups_of(table);
     if (!is_last) std::erase(groups, kOutputGroup);  // of data beside the normals, alpha goes along
     const auto stays_behind = [&](const OptionSetting& setting) {
@@ -251,7 +252,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         return output != nullptr && subject == printable(out) ? output->place : step.place;
     };
     try {
-        command.program = parsed(step, std::move(line), out, pool, console);
+        command.program = parsed(step, std::move(line), out, console);
         command.converter = converter_of(*command.program);
         if (fs::path(out).extension().empty())
             command.extension =
@@ -292,7 +293,7 @@ void Recipe::check_order(const StepSettings& step, const ReadyCommand& command, 
     if (packed != nullptr && packed->mip && !is_last) fail("builds levels, so it must be the last step");
 }
 
-void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console& console) {
+void Recipe::add_output(const OutputSettings& output, Console& console) {
     std::optional<NamePattern> name;
     std::string out;
     try {
@@ -308,7 +309,7 @@ void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console
     if (check_->is_given() && has_level(out))
         fail_at(manifest_.path, output.place, "check needs all levels in one file");
     check_folder(*name, out, output.place);
-    ReadyCommand last_step = ready(rule_.steps.back(), &output, true, out, pool, console);
+    ReadyCommand last_step = ready(rule_.steps.back(), &output, true, out, console);
     if (!last_step.extension.empty()) {
         name.emplace(output.name + last_step.extension);
         out += last_step.extension;
@@ -328,7 +329,7 @@ void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console
     const Task task = made.last.converter->task_for("input", out);
     made.settings += fmt::format("{} {}\n", name_of(kContainerNames, task.container), has_level(out) ? "levels" : "");
     made.settings += check_->text();
-    const Command& table = made.last.program->command;
+    const Command& table = table_of(rule_.steps[last].command);
     for (const std::string& argument : made.last.arguments) {
         if (row_of(table, cut(argument, '=').first.substr(2), {kDataGroup}) != nullptr) made.data += argument + "\n";
     }
@@ -339,8 +340,7 @@ void Recipe::add_output(const OutputSettings& output, ProgramPool& pool, Console
 std::string Recipe::preset_of(const std::string& name) const {
     const std::string step = cut(name, ' ').first;
     for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
-        const ReadyCommand& command = k < before_.size() ? before_[k] : outputs_.front().last;
-        const Command& table = command.program->command;
+        const Command& table = table_of(rule_.steps[k].command);
         const Row* const row = row_of(table, name.substr(name.rfind(' ') + 1), groups_of(table));
         if (rule_.steps[k].command == step && row != nullptr) return row->value.empty() ? "false" : row->preset;
     }

@@ -29,7 +29,8 @@ namespace tex::cli {
 // The names of steps: "bake" for bake-normals. These are the commands that make an output from each input.
 [[nodiscard]] std::vector<std::string> step_names();
 
-// Commands whose options have been read. Outputs with the same settings share one: its table of options takes 40 KB.
+// Commands whose options have been read. Outputs with the same settings share one, and all of them share the table of
+// their step, which takes 40 KB.
 class ProgramPool {
 public:
     // The table of a step, to look up options; nothing has been given.
@@ -45,7 +46,7 @@ private:
 
 // A command whose options have been read.
 struct ReadyCommand {
-    std::shared_ptr<Program> program;
+    std::shared_ptr<Program> program;      // without its table
     Converter* converter = nullptr;        // the program
     std::vector<std::string> arguments;    // the options as the manifest gives them, sorted by name
     std::vector<std::string> writes = {};  // those of them that name files to write (Row::writes), such as --height-out
@@ -76,7 +77,7 @@ struct RecipeOutput {
 class Recipe {
 public:
     // `number` counts the rules from 1. Paths in options are relative to `root`, the folder of the manifest (empty: the
-    // working directory). Throws UsageError with the place in the manifest.
+    // working directory). The pool is used as long as the recipe. Throws UsageError with the place in the manifest.
     Recipe(const Manifest& manifest, const RuleSettings& rule, int number, const std::string& root, ProgramPool& pool,
            Console& console);
     Recipe(Recipe&&) = default;
@@ -134,6 +135,8 @@ public:
     [[nodiscard]] std::string path_to(const std::string& name) const;
     // The value that a setting of RecipeOutput::named has if it is not given, in the words of --help; may be empty.
     [[nodiscard]] std::string preset_of(const std::string& name) const;
+    // The options of a step's command.
+    [[nodiscard]] const Command& table_of(const std::string& step) const { return pool_.table_of(step); }
     // The command lines that do the same, one for each step, for people.
     [[nodiscard]] std::vector<std::string> command_lines(const std::string& input, std::size_t output) const;
 
@@ -142,10 +145,10 @@ private:
     static constexpr const char* kBetween = "between.exr";
 
     [[nodiscard]] ReadyCommand ready(const StepSettings& step, const OutputSettings* output, bool is_last,
-                                     const std::string& out, ProgramPool& pool, Console& console) const;
+                                     const std::string& out, Console& console) const;
     [[nodiscard]] std::shared_ptr<Program> parsed(const StepSettings& step, std::vector<std::string> line,
-                                                  const std::string& out, ProgramPool& pool, Console& console) const;
-    [[nodiscard]] std::shared_ptr<const FurtherPlaces> trial_places(const Command& table) const;
+                                                  const std::string& out, Console& console) const;
+    [[nodiscard]] std::shared_ptr<const FurtherPlaces> trial_places(const Command& command) const;
     [[nodiscard]] std::shared_ptr<const FurtherPlaces> further_places(const std::string& input,
                                                                       std::map<std::string, std::string>* names) const;
     [[nodiscard]] std::vector<int> tiles_of(const ReadyCommand& command, const std::string& path,
@@ -161,7 +164,7 @@ private:
     [[nodiscard]] std::string with_root(const std::string& argument, const Command& command) const;
     void check_tiles(const ReadyCommand& first) const;
     void check_order(const StepSettings& step, const ReadyCommand& command, std::size_t index, Console& console) const;
-    void add_output(const OutputSettings& output, ProgramPool& pool, Console& console);
+    void add_output(const OutputSettings& output, Console& console);
     void find_files();
     [[nodiscard]] std::string below_root(const std::string& file) const;
     [[nodiscard]] std::vector<std::string> prerequisites_of(const std::string& path) const;
@@ -172,6 +175,7 @@ private:
     const RuleSettings& rule_;
     const int number_;
     const std::string root_;
+    ProgramPool& pool_;
     std::vector<Glob> match_, exclude_;
     std::vector<std::string> grids_;  // the patterns of match_ with {x} and {y}: tiles of terrains
     std::unique_ptr<TextureCheck> check_;

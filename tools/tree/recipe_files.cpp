@@ -93,13 +93,13 @@ void Recipe::check_folder(const NamePattern& name, const std::string& out, const
 
 // To try whether the options that write fit. The names are errors of the manifest if they are wrong whatever the input
 // is called.
-std::shared_ptr<const FurtherPlaces> Recipe::trial_places(const Command& table) const {
+std::shared_ptr<const FurtherPlaces> Recipe::trial_places(const Command& command) const {
     FurtherPlaces places;
     places.input = "name.png";
-    places.path_for = [this, &table](const std::string& option, const std::string& name) {
+    places.path_for = [this, &command](const std::string& option, const std::string& name) {
         const fs::path whole = (fs::path(rule_.out_dir) / fs::path(name).relative_path()).lexically_normal();
         const auto is_its_row = [&](const Row& row) { return row.name() == option; };
-        const auto row = std::find_if(table.rows().begin(), table.rows().end(), is_its_row);
+        const auto row = std::find_if(command.rows().begin(), command.rows().end(), is_its_row);
         if (!NamePattern(row->given.back()).uses("dir") && *whole.begin() == "..") {
             throw UsageError(option,
                              fmt::format("{} leads out of the folder of the manifest", printable(slashed(whole))));

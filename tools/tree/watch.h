@@ -21,6 +21,7 @@ namespace tex::cli {
 struct BuildTree {
     std::string text;  // of the manifest
     Manifest manifest;
+    ProgramPool pool;
     std::vector<Recipe> recipes;
     WorkList work;
 };
