@@ -123,3 +123,59 @@ def test_the_command_makes_the_same_maps(tmp_path):
     assert maps["rays"] == report["rays"]
     np.testing.assert_allclose(np.asarray(tex.read_image(out))[..., :3], maps["map"], atol=1e-6)
     np.testing.assert_array_equal(np.asarray(tex.read_image(tmp_path / "ao.exr")).squeeze(), maps["occlusion"])
+
+
+def test_places_are_copies_that_are_not_made():
+    near = {"front": 1, "back": 1, "heights": True, "high_ids": [4, 7]}
+    right = plane(positions=[[1, 0, 0.5], [2, 0, 0.5], [2, 2, 0.5], [1, 2, 0.5]])
+    copies = tex.transfer(EXTENT, low(), [plane(0.25), right], **near)
+    places = [{"part": 0, "name": "left"}, {"part": 0, "to_scene": [0.5, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0.25]}]
+    placed = tex.transfer(EXTENT, low(), plane(0.25), high_places=places, **near)
+    np.testing.assert_allclose(placed["heights"], copies["heights"], atol=1e-6)
+    np.testing.assert_array_equal(placed["ids"], copies["ids"])
+    assert set(np.unique(placed["ids"])) == {4, 7}
+    for wrong, error, words in [([{"part": -1}], ValueError, "part: must be 0 or more"),
+                                ([{"part": 1}], tex.BadOptionError, "high_places"),
+                                ([{"to_scene": [1.0] * 11}], ValueError, "12 numbers"),
+                                ([{"place": 0}], ValueError, "must be one of 'part', 'name', 'to_scene'"),
+                                ([0], TypeError, "high_places: expected a dict for each place")]:
+        with pytest.raises(error, match=words):
+            tex.transfer(EXTENT, low(), plane(0.25), high_places=wrong, **near)
+
+
+def forest(path, side, moves):
+    """A glTF of a square of side x side cells that nodes show, each moved."""
+    at = np.linspace(0, 1, side + 1, dtype=np.float32)
+    u, v = np.meshgrid(at, at)
+    positions = np.stack([2 * u, 2 * v, 0.25 + 0.1 * u * v], axis=-1).reshape(-1, 3)
+    corner = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).reshape(-1, 1)
+    indices = (corner + [0, 1, side + 2, 0, side + 2, side + 1]).astype(np.uint32)
+    path.with_suffix(".bin").write_bytes(positions.tobytes() + indices.tobytes())
+    accessors = [{"bufferView": 0, "componentType": 5126, "count": len(positions), "type": "VEC3",
+                  "min": positions.min(0).tolist(), "max": positions.max(0).tolist()},
+                 {"bufferView": 1, "componentType": 5125, "count": indices.size, "type": "SCALAR"}]
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(moves)))}],
+        "nodes": [{"mesh": 0, "name": f"tree{k}", "translation": move} for k, move in enumerate(moves)],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": accessors, "buffers": [{"uri": path.with_suffix(".bin").name,
+                                             "byteLength": positions.nbytes + indices.nbytes}],
+        "bufferViews": [{"buffer": 0, "byteLength": positions.nbytes},
+                        {"buffer": 0, "byteOffset": positions.nbytes, "byteLength": indices.nbytes}]}))
+    return tex.read_mesh(str(path))
+
+
+def test_places_in_a_scene(tmp_path):
+    moves = [[0, 0, 0], [0.5, 0, 0.125]]
+    parts, places = tex.places_in_scene(forest(tmp_path / "few.gltf", 8, moves))
+    assert len(parts) == 2 and places == []  # copies of few triangles are made
+    mesh = forest(tmp_path / "many.gltf", 300, moves)
+    parts, places = tex.places_in_scene(mesh)
+    assert [place["name"] for place in places] == ["tree0", "tree1"] and {place["part"] for place in places} == {0}
+    assert places[1]["to_scene"] == [1, 0, 0, 0.5, 0, 1, 0, 0, 0, 0, 1, 0.125]
+    near = {"front": 1, "back": 1, "heights": True}
+    placed = tex.transfer(EXTENT, low(), parts, high_places=places, **near)
+    copied = tex.transfer(EXTENT, low(), tex.parts_in_scene(mesh), **near)
+    np.testing.assert_allclose(placed["heights"], copied["heights"], atol=1e-6)
+    with pytest.raises(tex.UnsupportedError, match="too many copies"):
+        tex.places_in_scene(mesh, most=20)
