@@ -2,6 +2,7 @@
 
 #include <tex/pipeline.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -19,6 +20,7 @@
 #include "mesh/gltf.h"
 #include "mesh/gltf_names.h"
 #include "mesh/gltf_writer.h"
+#include "mesh/json.h"
 #include "threads/no_throw.h"
 
 namespace tex::inline v1 {
@@ -120,6 +122,37 @@ bool has_bytes(const std::string& path, std::span<const std::byte> bytes, const 
     return wanted && *now == *wanted;
 }
 
+// The files that the model at `path` names, if there is one.
+std::vector<std::string> named_by(const std::string& path, const MeshReadOptions& options) {
+    const auto status = FileStatus::of(path);
+    if (!status || status->kind != FileKind::regular) return {};
+    const auto bytes = read_at_most(path, options.max_bytes);
+    if (!bytes || !is_gltf(*bytes)) return {};
+    const auto chunks = gltf_chunks(*bytes);
+    if (!chunks) return {};
+    const auto document = JsonDocument::parse(chunks->json);
+    if (!document) return {};
+    return GltfNames(document->root(), {}).kept();
+}
+
+// Names beside the output come from the input, so that a file which has one of them may be anybody's. It is replaced if
+// the model whose place the output takes names it, too, or if nothing would be lost.
+Result<void> check_free(const std::string& output, const Prepared& prepared, const MeshReadOptions& options) {
+    std::optional<std::vector<std::string>> own;
+    for (std::size_t k = 0; k < prepared.made.beside.size(); ++k) {
+        const ModelFile& file = prepared.files.files[k];
+        const BesideModel& made = prepared.made.beside[k];
+        std::error_code error;
+        if (fs::symlink_status(file.path, error).type() == fs::file_type::not_found) continue;
+        if (!own) own = named_by(output, options);
+        if (std::find(own->begin(), own->end(), made.path) != own->end()) continue;
+        if (has_bytes(file.path, made.bytes, file.is_changed ? "" : file.from)) continue;
+        return Error{ErrorCode::io, file.path,
+                     "exists and is not known to be a file of " + output + "; give the model a folder for itself"};
+    }
+    return {};
+}
+
 Result<void> commit_all(std::vector<AtomicFile>& waiting) {
     for (AtomicFile& file : waiting) {
         if (auto placed = file.commit(); !placed) return placed;
@@ -174,6 +207,7 @@ Result<ModelFiles> write_model(const std::string& input, const std::string& outp
         }
         auto prepared = prepare(input, output, changes, options);
         if (!prepared) return prepared.error();
+        if (auto is_free = check_free(output, *prepared, options); !is_free) return is_free.error();
         if (auto written = write_all(*prepared, writing); !written) return written.error();
         return std::move(prepared->files);
     });

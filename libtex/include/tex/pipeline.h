@@ -430,10 +430,11 @@ struct ModelFiles {
 //
 // All files are written to the disk first. Then they take their places, one after the other, as write_file() describes,
 // and the model comes last: an interrupted run leaves the old model, and some of the files beside it may be new. Names
-// beside the model come from the model, so that links there are replaced and not followed; with options.no_clobber, a
-// file that already holds the same bytes stays.
+// beside the model come from the model. So links there are replaced and not followed, and a file that exists is replaced
+// only if the old model at `output` names it, or if it has the same bytes; with options.no_clobber, such a file stays.
 //
-// Errors: those of model_files() and write_file(); bad_data (a buffer with a picture is damaged); unsupported (a GLB
+// Errors: those of model_files() and write_file(); io (a file that would be replaced is not known to belong to the
+// output); bad_data (a buffer with a picture is damaged); unsupported (a GLB
 // file would have 4 GiB or more).
 [[nodiscard]] TEX_API Result<ModelFiles> write_model(const std::string& input, const std::string& output,
                                                      const ModelChanges& changes, const MeshReadOptions& options = {},
