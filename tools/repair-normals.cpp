@@ -20,6 +20,7 @@
 #include "cli/value.h"
 #include "options/normals.h"
 #include "reports/repairs.h"
+#include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 #include "tasks/written_levels.h"
 
@@ -28,6 +29,9 @@ namespace {
 using namespace tex;
 
 using Bytes = std::shared_ptr<const std::vector<std::byte>>;
+using MapOfModel = std::shared_ptr<const cli::ModelInput>;
+
+bool is_about_green(const Rule& rule) { return rule.family == RuleFamily::convention || rule.id == "N112"; }
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 40;  // of an input
 
@@ -35,7 +39,10 @@ class RepairNormals : public cli::Converter {
 public:
     explicit RepairNormals(const cli::ProgramRow& row);
 
-    [[nodiscard]] bool can_be_step() const override { return false; }
+    [[nodiscard]] cli::ExitCode work(cli::Console& console) override {
+        is_step_ = false;
+        return Converter::work(console);
+    }
 
 private:
     [[nodiscard]] Result<std::vector<cli::Task>> plan() const override {
@@ -44,11 +51,23 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules;
         rules.in_place = true;
+        rules.models = material_;
+        rules.writes_models = true;
+        rules.keeps_maps = true;
+        if (!height_file_.empty()) rules.amend = [this](cli::Task& task) { task.own.push_back(height_file_); };
         return rules;
     }
+    [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model);
+    [[nodiscard]] RepairOptions options_for(std::optional<YAxis> y) const;
+    void report(cli::Job& job, const std::string& name, const Repaired& repaired);
+    [[nodiscard]] Result<Repaired> repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
+                                                   const Texture& texture, const Execution& execution) const;
     [[nodiscard]] Result<void> write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read);
     [[nodiscard]] Result<void> copy(cli::Job& job, const std::vector<std::byte>& bytes);
+    [[nodiscard]] Result<PackFileOptions> packing(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
+                                                  const CheckReport& report) const;
     [[nodiscard]] Result<void> pack(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
                                     const CheckReport& report);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
@@ -62,8 +81,11 @@ private:
                     .empty();
     }
 
+    std::string material_, height_file_;
+    std::optional<HeightField> height_;
     RepairOptions options_;
     bool dry_run_ = false;
+    bool is_step_ = true;  // of a manifest
     std::optional<cli::LengthIn> length_in_;
     std::mutex mutex_;
     cli::RepairTotals totals_;
@@ -73,11 +95,13 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("NORMALS... -o FILE");
     command.usage("NORMALS... --out-dir DIR");
     command.usage("NORMALS... --dry-run");
-    command.input("NORMALS...", "normal maps; - is standard input");
+    command.usage("MODEL -o MODEL");
+    command.input("NORMALS...", "normal maps, and glTF models with their maps; - is standard input");
     command.finds_things();
     files.writes_nothing = [this] { return dry_run_; };
     files.add(command);
     command.group("Repairs");
+    command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     const auto rules_into = [](std::vector<std::string>& names) {
         return [&names](const std::string& text) {
             for (const std::string& name : cli::split(text, ',')) {
@@ -95,8 +119,10 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
         .repeatable = true;
     command.option("--skip", "ID[,ID...]", "leave the faults of these rules as they are", rules_into(options_.skip))
         .repeatable = true;
-    command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
-        .often(4, "print what would be done, and write nothing");
+    command
+        .text(height_file_, "--height", "FILE",
+              "the height map that the (single) input was made from, which decides whether green or red is mirrored")
+        .completes = cli::Completes::files;
     cli::Row& layout =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) { options_.checks.swizzle = cli::parse_swizzle(text); });
@@ -106,6 +132,8 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     cli::add_length_in(command, length_in_);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
+    command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
+        .often(4, "print what would be done, and write nothing");
     command.check([this] {
         if (!dry_run_) return;
         for (const std::string& option : command.given_of({"--update", "--depfile"}))
@@ -113,46 +141,143 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     });
     command.example("repair-normals 'art/**/*_n.png' --out-dir mended", "Undoes what the texels prove.");
     command.example("repair-normals 'art/**/*_n.png' --dry-run", "What would be done, and by which angle.");
+    command.example("repair-normals scene.glb -o mended.glb", "The maps of a model, and nothing else of it.");
     command.example("repair-normals rock_n.dds -o rock_n.dds --y up --likely",
                     "Turns green over where it points down, in place.");
 }
 
+Result<void> RepairNormals::check(const std::vector<cli::Task>& tasks) {
+    const auto has_model = [](const cli::Task& task) { return is_model(task.input); };
+    const bool has_models = std::any_of(tasks.begin(), tasks.end(), has_model);
+    if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
+    const bool writes_models =
+        std::any_of(tasks.begin(), tasks.end(), [](const cli::Task& task) { return task.model_output != nullptr; });
+    for (const std::string& option : command.given_of({"--update", "--depfile"})) {
+        // Which files are beside a model depends on which of its maps change.
+        if (writes_models) throw cli::UsageError(fmt::format("{} is not for models that are written", option));
+    }
+    if (height_file_.empty()) return {};
+    if (tasks.size() != 1 || has_models) throw cli::UsageError("--height goes with a single file, which is no model");
+    const auto image = read_image(height_file_, running.read);
+    if (!image) return image.error();
+    auto field = height_field(*image, {});
+    if (!field) return field.error().of(height_file_);
+    height_ = std::move(*field);
+    options_.checks.height = &*height_;
+    return {};
+}
+
+RepairOptions RepairNormals::options_for(std::optional<YAxis> y) const {
+    RepairOptions options = options_;
+    options.effort = output.effort;
+    options.checks.require.y = y;
+    options.checks.any_length = length_in_.has_value();
+    return options;
+}
+
+void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired) {
+    for (const FaultLeft& fault : repaired.left) {
+        const Finding& left = fault.finding;
+        if (left.severity != Severity::error) continue;
+        job.raise(cli::ExitCode::findings, fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message,
+                                                       fault.certainty == RepairClass::likely ? " (likely = true "
+                                                                                                "repairs it)" : ""));
+        break;
+    }
+    if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
+    const std::lock_guard lock(mutex_);
+    totals_.add(repaired);
+}
+
 Result<void> RepairNormals::process(cli::Job& job) {
-    if (is_model(job.task.input)) {
-        return Error{ErrorCode::unsupported, job.task.input,
-                     "is a model, and only pictures and textures are repaired: give its image"};
+    if (job.task.model_output) return process_model(job, *job.task.model_output);
+    if (dry_run_ && is_model(job.task.input)) {
+        const auto model = cli::maps_to_write(job.task.input, material_, {job.read_options});
+        return model ? process_model(job, *model) : model.error();
     }
     // Read once, so that what is copied is what was checked.
     ReadOptions read = job.read_options;
-    if (!cli::is_special_file(job.task.input)) {
+    if (job.task.model) {
+        if (auto opened = job.task.model->open(read); !opened) return opened;
+    } else if (!cli::is_special_file(job.task.input)) {
         const auto text = cli::read_text_file(job.task.input, kMostBytes);
         if (!text) return text.error();
         const auto* const first = reinterpret_cast<const std::byte*>(text->data());
         read.bytes = std::make_shared<const std::vector<std::byte>>(first, first + text->size());
     }
-    auto texture = read_texture(job.task.input, read);
+    auto texture = read_texture(job.task.map_path(), read);
     if (!texture) return texture.error();
     if (!job.reached(0.2)) return Error{ErrorCode::cancelled, {}, "cancelled"};
-    RepairOptions options = options_;
-    options.effort = output.effort;
-    options.checks.require.y = output.y;
-    options.checks.any_length = length_in_.has_value();
-    auto repaired = repair(job.task.input, *texture, options, job.until(dry_run_ ? 1.0 : 0.7));
+    const Execution execution = job.until(dry_run_ ? 1.0 : 0.7);
+    auto repaired = job.task.model ? repair_in_model(job, {job.task.model}, *texture, execution)
+                                   : repair(job.task.input, *texture, options_for(output.y), execution);
     if (!repaired) return repaired.error();
-    const bool is_refused = repaired->has_errors();
-    if (is_refused) job.raise(cli::ExitCode::findings);
     job.report.update(cli::repairs_json(*repaired));
-    if (!writes_to_output()) job.say(cli::repairs_text(job.task.name(), *repaired));
-    {
-        const std::lock_guard lock(mutex_);
-        totals_.add(*repaired);
-    }
+    report(job, job.task.name(), *repaired);
     if (dry_run_) return {};
-    if (is_refused) {
+    if (repaired->has_errors()) {
         if (writes_to_output()) job.warn("an error is left, and nothing is written; --dry-run shows it");
         return {};
     }
     return write(job, std::move(*texture), std::move(*repaired), read);
+}
+
+// glTF demands green up. What the tangents of the model make up for is left alone.
+Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
+                                                const Texture& texture, const Execution& execution) const {
+    RepairOptions options = options_for(output.y.value_or(YAxis::up));
+    auto repaired = repair(maps.front()->name(), texture, options, execution);
+    const auto turns_green = [](const RepairStep& step) { return is_about_green(*step.rule); };
+    if (!repaired || std::none_of(repaired->steps.begin(), repaired->steps.end(), turns_green)) return repaired;
+    const auto cancels = [](const Finding& finding) { return finding.rule->id == "N707"; };
+    const auto model = maps.front()->read(cli::LastModel::Part::all, job.read_options);
+    if (!model) return model.error();
+    for (const MapOfModel& map : maps) {
+        const auto report = check_map(**model, *map->map, {options.checks}, job.read_options, execution.quiet());
+        if (!report) return report.error();
+        if (std::none_of(report->findings.begin(), report->findings.end(), cancels)) continue;
+        for (const Rule& rule : tex::rules()) {
+            if (is_about_green(rule)) options.skip.emplace_back(rule.id);
+        }
+        return repair(map->name(), texture, options, execution.quiet());
+    }
+    return repaired;
+}
+
+// The maps that change become PNG, and the others keep their bytes.
+Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput& model) {
+    ModelChanges changes;
+    bool is_refused = false;
+    for (std::size_t k = 0; k < model.images.size(); ++k) {
+        const std::vector<MapOfModel>& maps = model.images[k];
+        const Execution execution =
+            job.until(0.9 * static_cast<double>(k + 1) / static_cast<double>(model.images.size()));
+        ReadOptions read = job.read_options;
+        if (auto opened = maps.front()->open(read); !opened) return opened;
+        auto texture = read_texture(maps.front()->path, read);
+        if (!texture) return texture.error();
+        auto repaired = repair_in_model(job, maps, *texture, execution);
+        if (!repaired) return repaired.error();
+        report(job, maps.front()->name(), *repaired);
+        is_refused = is_refused || repaired->has_errors();
+        for (const MapOfModel& map : maps) {
+            cli::Json line = cli::repairs_json(*repaired);
+            map->report(line);
+            job.report["maps"].push_back(std::move(line));
+        }
+        if (!repaired->texture || is_refused || dry_run_) continue;
+        auto with = packing(job, *repaired->texture, nullptr, repaired->after);
+        if (!with) return with.error();
+        const auto bytes = std::make_shared<std::vector<std::byte>>();
+        with->write.into = bytes;
+        const auto packed = pack_file(maps.front()->path, maps.front()->name(), job.task.container, *with, {job.threads(), {}});
+        if (!packed) return packed.error();
+        ModelPicture& picture = changes.pictures.emplace_back();
+        picture.container = job.task.container;
+        for (const MapOfModel& map : maps) picture.maps.push_back(*map->map);
+        picture.bytes = std::move(*bytes);
+    }
+    return is_refused || dry_run_ ? Result<void>() : cli::write_model_of(job, changes);
 }
 
 Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read) {
@@ -162,7 +287,7 @@ Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repair
     const bool is_in_place = job.task.output == job.task.input;
     const bool is_file = read.bytes && !cli::has_level(job.task.output);
     if (keeps && !is_changed && is_in_place) return {};
-    if (keeps && !is_changed && is_file && container_of(job.task.input) == job.task.container)
+    if (keeps && !is_changed && is_file && container_of(job.task.map_path()) == job.task.container)
         return copy(job, *read.bytes);
     if (keeps && can_hold(job.task.container, texture.format)) {
         const auto written = cli::write_levels(job, std::move(texture), output.write_options(job));
@@ -181,9 +306,9 @@ Result<void> RepairNormals::copy(cli::Job& job, const std::vector<std::byte>& by
     return {};
 }
 
-// Stores the map as pack-normals does.
-Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
-                                 const CheckReport& report) {
+// How a map is stored as pack-normals does it.
+Result<PackFileOptions> RepairNormals::packing(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
+                                               const CheckReport& report) const {
     PackFileOptions with;
     with.source.read = job.read_options;
     with.source.unpack.others = {true, true, false};
@@ -197,14 +322,21 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes by
         if (!bytes) return bytes.error();
         with.source.read.bytes = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
     }
-    with.pack = [&](const SourceInfo& info) {
+    with.pack = [this, &job, format = texture.format](const SourceInfo& info) {
         SourceInfo own = info;
-        own.format = texture.format;
+        own.format = format;
         return output.pack_options(output.format.value_or(cli::encoding_of(own, job.task)), info.y_axis, info.y_known);
     };
     with.write = output.write_options(job);
-    with.level_names = cli::level_names(job.task.output);
-    const auto packed = pack_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    return with;
+}
+
+Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes bytes_of_input,
+                                 const CheckReport& report) {
+    auto with = packing(job, texture, std::move(bytes_of_input), report);
+    if (!with) return with.error();
+    with->level_names = cli::level_names(job.task.output);
+    const auto packed = pack_file(job.task.map_path(), job.task.output, job.task.container, *with, job.until(1.0));
     if (!packed) return packed.error();
     cli::wrote_levels(job, job.task.output, packed->levels);
     cli::report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
@@ -213,7 +345,7 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes by
 }
 
 cli::ExitCode RepairNormals::finish(cli::Console& console) {
-    if (running.json || writes_to_output() || totals_.maps == 0) return cli::ExitCode::done;
+    if (is_step_ || running.json || writes_to_output() || totals_.maps == 0) return cli::ExitCode::done;
     return console.print(totals_.text(dry_run_) + "\n");
 }
 

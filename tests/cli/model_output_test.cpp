@@ -49,20 +49,24 @@ protected:
         EXPECT_NE(ran.err.find(said), std::string::npos) << script << ": " << ran.err;
         EXPECT_EQ(scratch_.list(), before) << script;
     }
-    // A square for each picture, with a material "m0", "m1" ...
-    void write_model_of(const std::string& name, const std::vector<std::string>& pictures) {
+    // A square for each picture, with a material "m0", "m1" ... Tangents have this w; 0: there are none.
+    void write_model_of(const std::string& name, const std::vector<std::string>& pictures, float w = 0.0f) {
         GltfMaker maker;
         maker.add(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3", 5126);
         maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
         maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
         maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+        std::vector<float> tangents;
+        for (int k = 0; k < 4; ++k) tangents.insert(tangents.end(), {1, 0, 0, w});
+        maker.add(tangents, "VEC4", 5126);
         maker.uri = R"("uri":"maps/square.bin",)";
         scratch_.write("maps/square.bin", maker.binary);
         std::string primitives;
         for (std::size_t k = 0; k < pictures.size(); ++k) {
             primitives += std::string(k == 0 ? "" : ",") +
-                          R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":)" +
-                          std::to_string(k) + "}";
+                          R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2)" +
+                          (w == 0.0f ? "" : R"(,"TANGENT":4)") + R"(},"indices":3,"material":)" + std::to_string(k) +
+                          "}";
         }
         JsonValue model = JsonValue::parse(maker.json(primitives));
         for (const std::string& picture : pictures) {
@@ -150,6 +154,26 @@ TEST_F(ModelOutputs, OutputsThatReachInputsAreRefused) {
     refuses("pack-normals m.gltf -o a.gltf --y down --depfile maps/a_up.png", 2, "--depfile");
 }
 
+// A model chooses the names of the files beside it: it must not replace what others keep there.
+TEST_F(ModelOutputs, FilesOfOthersStay) {
+    does("mkdir -p out/maps; cp bricks.png out/maps/down.png");
+    refuses("pack-normals m.gltf -o out/m.gltf --y down", 3, "out/maps/down.png: exists and is not known to be a file");
+    same("out/maps/down.png", "bricks.png");
+    EXPECT_FALSE(scratch_.has("out/m.gltf"));
+    // A copy that would not change is no loss: a run that was killed can be repeated.
+    does("cp maps/square.bin out/maps; rm out/maps/down.png; pack-normals m.gltf -o out/m.gltf --y down");
+    // What the last run wrote is replaced, with other settings, too.
+    does("cp out/maps/down.png old.png; pack-normals m.gltf -o out/m.gltf --y down --max-size 16");
+    EXPECT_NE(scratch_.read("old.png"), scratch_.read("out/maps/down.png"));
+    // What that model does not name is not.
+    write_model_of("n.gltf", {"maps/up.png", "maps/down.png"});
+    refuses("pack-normals n.gltf -o out/n.gltf --y up", 3, "exists and is not known to be a file of out/n.gltf");
+    does("rm out/maps/down.png; ln -s ../../bricks.png out/maps/down.png");
+    refuses("pack-normals n.gltf -o out/n.gltf --y up", 3, "exists and is not known to be a file of out/n.gltf");
+    does("rm out/maps/down.png; ln -s nowhere out/maps/down.png");
+    refuses("pack-normals n.gltf -o out/n.gltf --y up", 3, "exists and is not known to be a file of out/n.gltf");
+}
+
 TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals N804*.glb -o x.gltf", 4, "is GLB, and so the output must be called .glb: x.gltf");
     refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");
@@ -210,13 +234,53 @@ TEST_F(ModelOutputs, FilesThatAreMissingAreSaid) {
     EXPECT_EQ(does("pack-normals m.gltf -o fixed.gltf --y up").err.find("color.png"), std::string::npos);
 }
 
+TEST_F(ModelOutputs, RepairsChangeDamagedMapsAlone) {
+    does("convert maps/up.png -set colorspace RGB -colorspace sRGB -strip maps/light.png");
+    write_model_of("m.gltf", {"maps/up.png", "maps/light.png"});
+    refuses("repair-normals m.gltf --dry-run --only N403", 0, "");
+    EXPECT_NE(go("repair-normals m.gltf --dry-run").out.find("m.gltf: m1: N302"), std::string::npos);
+    does("mkdir out; repair-normals m.gltf -o out/m.gltf --json > lines");
+    same("out/maps/up.png", "maps/up.png");
+    same("out/maps/square.bin", "maps/square.bin");
+    does("compare-normals up.png out/maps/light.png --max 1.5; check-normals out/m.gltf --disable N403");
+    const auto line = JsonValue::parse(scratch_.read("lines"));
+    EXPECT_EQ(line["maps"][0]["state"], "whole");
+    EXPECT_EQ(line["maps"][1]["state"], "repaired");
+    EXPECT_EQ(line["maps"][1]["material"], "m1");
+    // In its own folder, only the picture that changes is a new one.
+    does("repair-normals m.gltf -o mended.gltf");
+    same("maps/mended_light.png", "out/maps/light.png");
+    EXPECT_FALSE(scratch_.has("maps/mended_up.png"));
+    does("repair-normals m.gltf --material m0 -o same.gltf");
+    same("same.gltf", "m.gltf");
+    // The maps as pictures.
+    does("repair-normals m.gltf --out-dir pictures");
+    same("pictures/m_m1.png", "out/maps/light.png");
+    refuses("repair-normals m.gltf -o a.gltf --depfile d", 2, "--depfile is not for models that are written");
+    // x is lost, and the whole model stays unwritten.
+    does("convert maps/up.png -channel R -evaluate set 100% +channel maps/pink.png");
+    write_model_of("m.gltf", {"maps/light.png", "maps/pink.png"});
+    refuses("repair-normals m.gltf -o a.gltf", 1, "");
+    does("repair-normals m.gltf --material m0 -o a.gltf");
+}
+
+TEST_F(ModelOutputs, RepairsLeaveWhatTangentsMakeUpFor) {
+    write_model_of("agree.gltf", {"maps/down.png"}, 1.0f);
+    EXPECT_NE(does("repair-normals agree.gltf --dry-run --likely").out.find("N401"), std::string::npos);
+    write_model_of("cancel.gltf", {"maps/down.png"}, -1.0f);
+    does("repair-normals cancel.gltf -o b.gltf --likely > said");
+    same("b.gltf", "cancel.gltf");
+}
+
 // What check-normals prints about a model mends it.
 TEST_F(ModelOutputs, FixesOfCheckNormalsMendModels) {
     write_model_of("d.gltf", {"maps/down.png", "maps/up.png"});
     does("convert maps/up.png -channel RGB -evaluate multiply 0.8 +channel -evaluate add 10% maps/short.png");
     write_model_of("s.gltf", {"maps/up.png", "maps/short.png"});
+    does("convert maps/up.png -set colorspace RGB -colorspace sRGB -strip maps/light.png");
+    write_model_of("l.gltf", {"maps/light.png", "maps/up.png"});
     extract("N801-two-channel-in-model.glb", "maps/two.dds");
-    for (const std::string model : {"d.gltf", "s.gltf", "N801-two-channel-in-model.glb"}) {
+    for (const std::string model : {"d.gltf", "s.gltf", "l.gltf", "N801-two-channel-in-model.glb"}) {
         const auto before = JsonValue::parse(go("check-normals --json " + model).out);
         int fixes = 0;
         for (const auto& finding : before["findings"]) {

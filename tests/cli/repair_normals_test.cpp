@@ -133,10 +133,63 @@ TEST_F(RepairNormals, SaysWhatItDoesNotTake) {
     EXPECT_EQ(go({"clean.png"}).code, 2);
     EXPECT_EQ(go({"clean.png", "-o", "a.png", "--only", "N999"}).code, 2);
     EXPECT_EQ(go({"clean.png", "--dry-run", "--depfile", "d"}).code, 2);
+    EXPECT_EQ(go({"clean.png", "-o", "a.png", "--material", "m0"}).code, 2);
+    EXPECT_EQ(go({"clean.png", "bgr.png", "--dry-run", "--height", "waves.png"}).code, 2);
+    EXPECT_EQ(go({"clean.png", "-o", "waves.png", "--height", "waves.png"}).code, 2);
     scratch_.write("model.gltf", R"({"asset": {"version": "2.0"}})");
-    const Ran model = go({"model.gltf", "-o", "out.png"});
-    EXPECT_EQ(model.code, 4);
-    EXPECT_NE(model.err.find("is a model"), std::string::npos) << model.err;
+    for (const char* output : {"out.png", "out.gltf"}) {
+        const Ran model = go({"model.gltf", "-o", output});
+        EXPECT_EQ(model.code, 4);
+        EXPECT_NE(model.err.find("no material uses a normal map"), std::string::npos) << model.err;
+    }
+}
+
+// Slopes show that one of red and green is mirrored, and heights show which.
+TEST_F(RepairNormals, HeightsDecideWhichChannelIsMirrored) {
+    for (const std::string channel : {"R", "G"}) {
+        damage("-channel " + channel + " -negate +channel", "mirrored.png");
+        EXPECT_EQ(go({"mirrored.png", "-o", "out.png", "--y", "up"}).code, 1) << channel;
+        EXPECT_FALSE(scratch_.has("out.png"));
+        const Ran ran = go({"mirrored.png", "-o", "out.png", "--y", "up", "--height", "waves.png"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_NE(ran.out.find("invert " + channel + " (safe)"), std::string::npos) << ran.out;
+        EXPECT_TRUE(bytes_of("out.png") == clean_) << channel;
+        EXPECT_EQ(shell(scratch_, "rm out.png").code, 0);
+    }
+}
+
+TEST_F(RepairNormals, IsAStepOfManifests) {
+    const auto write = [&](const std::string& options) {
+        scratch_.write("normals.toml", "version = 1\n[[rule]]\nmatch = \"in/*.png\"\nout-dir = \"out\"\n"
+                                       "name = \"{stem}.png\"\nsteps = [ { repair = { " +
+                                           options + " } } ]\n");
+    };
+    const auto build = [&] { return run(scratch_, "build-normals", {"--no-sync"}); };
+    ASSERT_EQ(shell(scratch_, "mkdir in; cp clean.png bgr.png in").code, 0);
+    write("");
+    const Ran ran = build();
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(scratch_.read("out/clean.png"), scratch_.read("clean.png"));
+    EXPECT_EQ(bytes_of("out/bgr.png"), clean_);
+    EXPECT_NE(build().out.find("0 made, 2 up to date"), std::string::npos);
+    // Green that is mirrored, if it is one: likely, and so an error unless the manifest takes that.
+    damage("-channel G -negate +channel", "in/down.png");
+    write("y = \"up\"");
+    const Ran refused = build();
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("in/down.png: cannot be repaired: N401"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("likely = true"), std::string::npos) << refused.err;
+    EXPECT_FALSE(scratch_.has("out/down.png"));
+    write("y = \"up\", likely = true");
+    EXPECT_EQ(build().code, 0);
+    EXPECT_EQ(bytes_of("out/down.png"), clean_);
+    write("dry-run = true");
+    EXPECT_EQ(build().code, 2);
+    // No picture that holds no normals becomes a texture.
+    write("likely = true");
+    scratch_.add_sample("waves.png", "in/waves.png");
+    EXPECT_EQ(build().code, 4);
+    EXPECT_FALSE(scratch_.has("out/waves.png"));
 }
 
 TEST_F(RepairNormals, TheManualHasTheClassOfEveryRule) {

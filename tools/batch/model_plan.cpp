@@ -73,7 +73,7 @@ std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOption
         Task task{input.name, output_for(input, files), *own.container};
         task.engine = own.engine;
         task.shared = rules.shared;
-        all_files.push_back(set_model_output(task, *rules.models, options));
+        all_files.push_back(set_model_output(task, *rules.models, rules.keeps_maps, options));
         tasks.push_back(std::move(task));
     }
     leave_out_shared(tasks, all_files);

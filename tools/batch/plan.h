@@ -28,6 +28,7 @@ struct OutputRules {
     std::function<void(std::vector<Task>& tasks)> relate = {};      // called with all tasks of a command; may be empty
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
     bool writes_models = false;              // such inputs can become models again: outputs that are called so
+    bool keeps_maps = false;                 // of such models, some maps may stay as they are
     // Inputs are meshes, and outputs with <UDIM> in their names are made for each of the tiles that this returns. None:
     // the mesh has none, or cannot be read, of which its job complains. Empty: the inputs' names say the tiles.
     std::function<std::vector<int>(const std::string& input)> tiles = {};

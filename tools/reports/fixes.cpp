@@ -259,12 +259,18 @@ std::string mirror_advice(std::string_view id, const Target& target, const Check
            "; check-normals --height FILE decides between the two, and so does a look at the occlusion map or the mesh";
 }
 
+// The extension of a model that can be written again with another map; empty if it cannot.
+std::string type_of_model(const CheckReport& report) {
+    const std::string type = lower_case(report.file.substr(std::min(report.file.rfind('.'), report.file.size())));
+    return !report.material.empty() && (type == ".glb" || type == ".gltf") ? type : "";
+}
+
 // The command that writes the model again, with this map corrected.
 Fix model_fix(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
-    const std::string type = lower_case(report.file.substr(std::min(report.file.rfind('.'), report.file.size())));
+    const std::string type = type_of_model(report);
     const auto target = target_of(id, report, require);
-    const bool is_written = !report.material.empty() && (type == ".glb" || type == ".gltf") && target &&
+    const bool is_written = !type.empty() && target &&
                             command_of(*finding.rule, report).program == "pack-normals" &&
                             !is_red_mirrored(id, report) && id != "N108";
     if (!is_written) return {"Correct the image in the program that made it, and put it into the model again."};
@@ -300,7 +306,8 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     CheckOptions checks;
     checks.require = require;
     const auto step = repair_of(finding, report, checks);
-    if (!step || !report.map.empty()) return {};
+    const std::string model = report.map.empty() ? "" : type_of_model(report);
+    if (!step || (!report.map.empty() && model.empty())) return {};
     std::string text(finding.rule->fix);
     if (finding.rule->id == "N308") {
         text =
@@ -310,8 +317,9 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     if (!text.starts_with(kRepair)) return {};
     const std::optional<Container> own = container_of(report.file);
     const bool is_kept = own && *own != Container::jpeg;
-    replace_word(text, "FIXED", "FIXED" + extension_of(is_kept ? *own : Container::png));
-    replace_word(text, "FILE", shell_file(report.file));
+    replace_word(text, "FIXED", "FIXED" + (model.empty() ? extension_of(is_kept ? *own : Container::png) : model));
+    const std::string material = model.empty() ? "" : " --material " + shell_word(report.material);
+    replace_word(text, "FILE", shell_file(report.file) + material);
     return text;
 }
 

@@ -63,7 +63,11 @@ public:
         remarks_.push_back({name_for(file), std::move(sentence)});
     }
     void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
-    void raise(ExitCode code) { code_ = std::max(code_, code); }  // the run exits with this code or a higher one
+    // The run exits with this code or a higher one. `why` is for build-normals: a clause without the name of the file.
+    void raise(ExitCode code, std::string why = {}) {
+        code_ = std::max(code_, code);
+        if (!why.empty()) why_ = std::move(why);
+    }
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 
     [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
@@ -71,6 +75,7 @@ public:
     [[nodiscard]] const std::vector<std::string>& outputs() const { return outputs_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     [[nodiscard]] ExitCode code() const { return code_; }
+    [[nodiscard]] const std::string& why() const { return why_; }
 
 private:
     // A warning about the whole mesh is not one about a tile of it.
@@ -88,6 +93,7 @@ private:
     std::vector<std::string> outputs_;
     std::string text_;
     ExitCode code_ = ExitCode::done;
+    std::string why_;
 };
 
 }  // namespace tex::cli

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <tuple>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "cli/text.h"
 #include "files/path_names.h"
@@ -21,7 +24,30 @@ bool share_an_image(const Model& model, const ModelMap& a, const ModelMap& b) {
     return first.material == second.material && first.slot == second.slot;
 }
 
-Result<ModelOutput> output_of(const std::string& input, const std::string& material, const MeshReadOptions& options) {
+// Adds the files that are written if no map changes.
+void add_copies(ModelFiles& all, const Result<ModelFiles>& copies) {
+    if (!copies) return;
+    for (const ModelFile& copy : copies->files) {
+        const bool is_known = std::any_of(all.files.begin(), all.files.end(),
+                                          [&](const ModelFile& file) { return file.path == copy.path; });
+        if (!is_known) all.files.insert(all.files.begin(), copy);
+    }
+}
+
+}  // namespace
+
+bool names_model(const std::string& name) {
+    const std::string extension = lower_case(slashed(std::filesystem::path(name).extension()));
+    return extension == ".glb" || extension == ".gltf";
+}
+
+bool is_for_models(Encoding encoding) {
+    return encoding == Encoding::rgb8 || encoding == Encoding::rgba8 || encoding == Encoding::rgb16 ||
+           encoding == Encoding::rgba16;
+}
+
+Result<ModelOutput> maps_to_write(const std::string& input, const std::string& material,
+                                  const MeshReadOptions& options) {
     ModelOutput output;
     const auto maps = with_maps_of_models({{input}}, material, options);
     if (maps.front().model == nullptr) {  // it is no model, or cannot be opened
@@ -48,18 +74,6 @@ Result<ModelOutput> output_of(const std::string& input, const std::string& mater
     return output;
 }
 
-}  // namespace
-
-bool names_model(const std::string& name) {
-    const std::string extension = lower_case(slashed(std::filesystem::path(name).extension()));
-    return extension == ".glb" || extension == ".gltf";
-}
-
-bool is_for_models(Encoding encoding) {
-    return encoding == Encoding::rgb8 || encoding == Encoding::rgba8 || encoding == Encoding::rgb16 ||
-           encoding == Encoding::rgba16;
-}
-
 ModelChanges ModelOutput::changes(Container container) const {
     ModelChanges all;
     for (const auto& group : images) {
@@ -70,12 +84,14 @@ ModelChanges ModelOutput::changes(Container container) const {
     return all;
 }
 
-std::vector<ModelFile> set_model_output(Task& task, const std::string& material, const MeshReadOptions& options) {
+std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
+                                        const MeshReadOptions& options) {
     auto output = std::make_shared<ModelOutput>();
     task.model_output = output;
-    auto made = output_of(task.input, material, options);
+    auto made = maps_to_write(task.input, material, options);
     std::optional<Result<ModelFiles>> files;
     if (made) files = model_files(task.input, task.output, made->changes(task.container), options);
+    if (made && *files && may_keep) add_copies(**files, model_files(task.input, task.output, {}, options));
     if (!made || !*files) {
         output->error = made ? files->error() : made.error();
         return {};
@@ -91,6 +107,29 @@ std::vector<ModelFile> set_model_output(Task& task, const std::string& material,
     }
     task.own.assign(read.begin(), read.end());
     return (*files)->files;
+}
+
+Result<void> write_model_of(Job& job, const ModelChanges& changes) {
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    MeshReadOptions how;
+    how.reader = job.read_options;
+    const auto written = write_model(job.task.input, job.task.output, changes, how, job.write_options);
+    if (!written) return written.error();
+    job.wrote(job.task.output);
+    for (const ModelFile& file : written->files) {
+        if (file.path == job.task.output) continue;
+        job.wrote(file.path);
+        job.report["files"].push_back(file.path);
+    }
+    const auto warn_of = [&](const std::vector<std::string>& names, const char* what) {
+        if (names.empty()) return;
+        const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
+        job.warn(fmt::format("it names {}{}, which {}", printable(names.front()), more, what));
+    };
+    warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
+    warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
+    std::ignore = job.reached(1.0);
+    return {};
 }
 
 }  // namespace tex::cli

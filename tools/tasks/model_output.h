@@ -12,6 +12,7 @@
 #include <tex/mesh.h>
 #include <tex/pipeline.h>
 
+#include "tasks/job.h"
 #include "tasks/model_input.h"
 #include "tasks/task.h"
 
@@ -33,9 +34,18 @@ struct ModelOutput {
     [[nodiscard]] ModelChanges changes(Container container) const;
 };
 
+// The maps of a model, all or those of the material `material` if it is not empty. Errors: those of read_model();
+// unsupported (no such map); bad_data (a texture without an image).
+[[nodiscard]] Result<ModelOutput> maps_to_write(const std::string& input, const std::string& material,
+                                                const MeshReadOptions& options);
+
 // Sets the model of a task whose input and output are models, and the files beside them: those that the task reads, and
-// those that it writes, which it returns. `material` is empty for all of them. What is wrong with the model becomes its
-// error.
-std::vector<ModelFile> set_model_output(Task& task, const std::string& material, const MeshReadOptions& options);
+// those that it writes, which it returns. If the task may leave maps as they are (`may_keep`), that includes copies of
+// their files. `material` is that of maps_to_write(). What is wrong with the model becomes its error.
+std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
+                                        const MeshReadOptions& options);
+
+// Writes the model of a job with these changes, and reports the files beside it. Errors: those of write_model().
+[[nodiscard]] Result<void> write_model_of(Job& job, const ModelChanges& changes);
 
 }  // namespace tex::cli

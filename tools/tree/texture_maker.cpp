@@ -132,8 +132,8 @@ std::vector<std::string> files_of(const Task& task, const std::string& path, int
 Result<void> run_command(Converter& converter, Job& job, std::vector<std::string>& files) {
     if (Result<void> done = converter.process_task(job); !done) return done;
     if (job.code() != ExitCode::done) {
-        return Error{ErrorCode::bad_data, job.task.input,
-                     job.warnings().empty() ? "has findings" : job.warnings().back().message};
+        const std::string why = job.warnings().empty() ? "has findings" : job.warnings().back().message;
+        return Error{ErrorCode::bad_data, job.task.input, job.why().empty() ? why : job.why()};
     }
     const std::vector<std::string>& more = job.task.more_outputs;
     for (const std::string& file : job.outputs()) {
