@@ -97,6 +97,29 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
               0);
 }
 
+// A hook that rewrites: what is staged is repaired in the working tree, and staged again by hand.
+TEST_F(CheckNormalsCi, HookRepairsWhatIsStaged) {
+    EXPECT_EQ(shell(scratch_, "cp samples/ci/pre-commit-repair.sh .git/hooks/pre-commit").code, 0);
+    bake("art/a_n.dds", "up");
+    const std::string make = "pack-normals art/a_n.dds -o art/a_n.png --format rgb8 && cp art/a_n.png right.png && "
+                             "convert right.png -separate -swap 0,2 -combine -strip art/a_n.png && rm art/a_n.dds && "
+                             "git add art";
+    EXPECT_EQ(shell(scratch_, make).code, 0);
+    const std::string bgr = scratch_.read("art/a_n.png");
+    // What is not staged is nobody's to change.
+    EXPECT_EQ(shell(scratch_, "cp art/a_n.png keep; echo more >>art/a_n.png").code, 0);
+    const Ran partly = shell(scratch_, "git commit -qm partly");
+    EXPECT_NE(partly.code, 0);
+    EXPECT_NE(partly.err.find("changes that are not staged"), std::string::npos) << partly.err;
+    EXPECT_EQ(scratch_.read("art/a_n.png"), bgr + "more\n");
+    EXPECT_EQ(shell(scratch_, "mv keep art/a_n.png").code, 0);
+    const Ran refused = shell(scratch_, "git commit -qm wrong");
+    EXPECT_NE(refused.code, 0);
+    EXPECT_NE(refused.err.find("art/a_n.png: repaired; look at it"), std::string::npos) << refused.err;
+    EXPECT_EQ(shell(scratch_, "compare-normals right.png art/a_n.png --max 0").code, 0);
+    EXPECT_EQ(shell(scratch_, "git add art && git commit -qm right").code, 0);
+}
+
 // Both stand in the repository, and fit the copies of the staged files.
 TEST_F(CheckNormalsCi, HookUsesTheConfigurationAndTheBaseline) {
     EXPECT_EQ(shell(scratch_, "cp samples/ci/pre-commit.sh .git/hooks/pre-commit").code, 0);

@@ -1,0 +1,22 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# .git/hooks/pre-commit: repairs staged normal maps. It undoes what the texels prove, in the files of the working tree,
+# and then refuses the commit, so that somebody looks at the maps and stages them again. repair-normals is in the Debian
+# package libtex-tools. pre-commit.sh checks without changing anything.
+set -eu
+list=$(mktemp)
+trap 'rm -f "$list"' EXIT
+git diff --cached --name-only -z --diff-filter=ACMR -- '*_n.dds' '*_n.ktx2' '*_n.png' '*_n.exr' '*_n.tga' '*_n.tif' \
+    >"$list"
+[ -s "$list" ] || exit 0
+if ! xargs -0 git diff --quiet -- <"$list"; then
+    echo 'A staged normal map has changes that are not staged: stage or stash them.' >&2
+    exit 1
+fi
+repaired=0
+xargs -0 -n 1 sh -c 'exec repair-normals --quiet "./$0" -o "./$0"' <"$list" || repaired=1
+if ! xargs -0 git diff --quiet -- <"$list"; then
+    xargs -0 git diff --name-only -- <"$list" | sed 's/$/: repaired; look at it, then git add and commit again/' >&2
+    repaired=1
+fi
+exit $repaired
