@@ -230,6 +230,14 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     says("three", "out/three-packed/rock.ktx2", "three does not read normals from bc5-unorm, rg");
     // three.js 0.187 draws the file for bevy as it must (tests/engines).
     EXPECT_EQ(scratch_.read("out/three-packed/rock.ktx2"), scratch_.read("out/bevy/rock.ktx2"));
+    // Engines treat floats as other pictures (three.js 0.187 draws an EXR file of vectors flat and black).
+    does("bake-normals rock.png -o vectors.exr; convert out/unity/rock.png -strip codes.png; "
+         "oiiotool codes.png --colorconvert linear linear -d float -o codes.exr 2>/dev/null || "
+         "convert codes.png -set colorspace RGB -define quantum:format=floating-point codes.exr");
+    says("blender", "vectors.exr", "blender decodes 2c - 1, and the file holds x, y and z themselves");
+    EXPECT_EQ(shell(scratch_, "check-normals --for blender codes.exr").code, 0);
+    fails("bake-normals rock.png -o vectors.exr --for three --format half", "and three decodes 2c - 1");
+    fails("pack-normals out/unity/rock.png -o a.ktx2 --for bevy --format rgba16f", "and bevy decodes 2c - 1");
     says("bevy", "out/godot/rock.png", "bevy needs all 10 levels, and the file has 1");
     does("bake-normals rock.png -o one.dds --mips none");
     says("unity", "one.dds", "unity needs all 10 levels, and the file has 1");

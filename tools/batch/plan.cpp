@@ -65,6 +65,14 @@ std::string output_of(const std::string& pattern, const Input& input) {
     return input.place ? with_grid(pattern, *input.place) : with_tile(pattern, input.tile);
 }
 
+// Engines decode 2c - 1, in whatever file, and our files of floats hold x, y and z themselves.
+void check_fits_engine(const std::string& output, Encoding encoding, const Engine& engine) {
+    if (format_info(encoding_info(encoding).format).sample != SampleKind::floating) return;
+    throw UsageError(fmt::format(
+        "{}: {} holds x, y and z themselves, and {} decodes 2c - 1: --format rgb16 in a .png file has 16 bits",
+        printable(output), name_of(kEncodingNames, encoding), engine.name));
+}
+
 // The number of inputs is too large for -o.
 [[noreturn]] void refuse_many(const std::vector<Input>& inputs, const OutputRules& rules) {
     const bool all_one = std::all_of(inputs.begin(), inputs.end(), [&](const Input& input) {
@@ -138,6 +146,7 @@ Task complete(Task task, const OutputOptions& output, const OutputRules& rules) 
     task.shared = rules.shared;
     task.container = output.container_for(first, rules.standard_output);
     if (output.format) OutputOptions::check_holds(first, task.container, *output.format);
+    if (output.format && task.engine != nullptr) check_fits_engine(first, *output.format, *task.engine);
     if (rules.amend) rules.amend(task);
     return task;
 }

@@ -41,8 +41,7 @@ constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, astc_4x4, astc
 // Engines that compress textures themselves get a picture that is not compressed: a second lossy step would add its
 // error to the first one's, and the engine would read x and y from the wrong channels of DXT5nm and BC5.
 constexpr Engine kEngines[] = {
-    // docs.unity3d.com/Manual/StandardShaderMaterialParameterSmoothness.html: smoothness is alpha of the metallic map,
-    // and
+    // docs.unity3d.com/Manual/StandardShaderMaterialParameterSmoothness.html: smoothness is alpha of the metallic map;
     // HDRP's mask map has occlusion in green besides.
     // docs.unity3d.com/Manual/texture-type-normal-map.html: Flip Green Channel is for other conventions than Unity's.
     // unity.huh.how/textures/normal-map-format.html: "Unity uses Y+ normal maps, known as OpenGL format".
@@ -69,9 +68,8 @@ constexpr Engine kEngines[] = {
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
      kThreeTypes, kRgb, RoughnessUse::green},
-    // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; NormalMapNode.js
-    // for
-    // WebGPURenderer (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
+    // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
+    // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
     {"three-packed", ktx2, bc5, YAxis::up, true, "",
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
      "for desktop GPUs, --format eac-rg11 for others. The core of glTF does not allow such files in a model (issue "

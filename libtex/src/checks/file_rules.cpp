@@ -105,6 +105,9 @@ void check_engine(const CheckContext& context, const EngineNeeds& needs, Finding
         reasons.push_back("does not read normals from " + format_text(texture, swizzle) + " but from " +
                           names_of(needs.encodings, kEncodingNames));
     }
+    // Engines treat floats as they treat other pictures.
+    if (is_read && context.stored.is_signed && format_info(texture.format).sample == SampleKind::floating)
+        reasons.emplace_back("decodes 2c - 1, and the file holds x, y and z themselves, from -1 to 1");
     const int levels = static_cast<int>(texture.levels.size()), complete = level_count(texture.extent());
     const bool takes_levels = needs.levels || (is_read && format_info(texture.format).has_blocks());
     if (takes_levels && levels < complete)

@@ -45,8 +45,8 @@ constexpr Rule kRules[] = {
      "KTX2 and EXR files of libtex say which way y points.",
      "pack-normals FILE --keep-length --y-in WANTED --y WANTED --format SAME -o FIXED", ""},
     {"N113", "unfit-for-engine", file, error, true, "The file is not what the engine reads.",
-     "The engine named by --for does not read its file type, does not read normals from its format, or gets too few "
-     "levels. Engines do not build levels for block formats.",
+     "The engine named by --for does not read its file type, does not read normals from its format, gets too few "
+     "levels, or decodes 2c - 1 where floats hold x, y and z themselves. Engines do not build levels for block formats.",
      "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
     {"N114", "uastc-without-alpha", file, error, true, "The file has no y.",
      "Transcoders make x of BC5 and EAC RG11 from R, and y from A. Without alpha, y is 1 everywhere.",
