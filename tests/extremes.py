@@ -45,6 +45,7 @@ INPUT = "@input"  # stands for the command's first input
 # The inputs of each command, and what its smallest whole command line is.
 LINES = {
     "bake": ["heights.png", "-o", "out.dds"],
+    "build": ["normals.toml", "--no-sync"],
     "blend": ["normals.png", "normals.png", "-o", "out.png"],
     "check": ["normals.png"],
     "compare": ["normals.png", "normals.dds"],
@@ -53,15 +54,20 @@ LINES = {
     "mip": ["normals.png", "-o", "out.ktx2"],
     "pack": ["normals.png", "-o", "out.dds"],
     "preview": ["normals.png", "-o", "out.png", "--size", "64"],
+    "repair": ["normals.png", "-o", "out.png"],
     "scale": ["normals.png", "-o", "out.png", "--scale", "2"],
     "transfer": ["model.glb", "model.glb", "-o", "out.png", "--extent", "32x32"],
     "unpack": ["normals.dds", "-o", "out.png"],
 }
+# Options that are not tried: the lists of inputs are texts of their own, and a watch ends when somebody ends it.
+LEFT_OUT = {"--files-from", "--watch"}
 # What each command makes of a model.
 MODEL_LINES = [
     ["check-normals", "model.glb"],
     ["preview-normals", "model.glb", "-o", "out.png", "--size", "64"],
     ["pack-normals", "model.glb", "-o", "out.png"],
+    ["pack-normals", "model.glb", "-o", "out.glb", "--y", "down"],
+    ["repair-normals", "model.glb", "-o", "out.glb", "--likely"],
     ["convert-normals", "model.glb", "--out-dir", "out"],
     ["transfer-normals", "model.glb", "model.glb", "-o", "out.png", "--extent", "32x32", "--occlusion-out", "ao.png"],
 ]
@@ -222,6 +228,8 @@ def main():
     picture = png(16, 8, 3, 8, lambda x, y: bytes([96 + 4 * x, 160 - 8 * y, 240]))
     whole, buffer = document(picture)
     inputs = {"heights.png": heights, "normals.png": picture,
+              "normals.toml": b"version = 1\n[[rule]]\nmatch = 'normals.png'\nname = 'out/{stem}.dds'\n"
+                              b"steps = [ { pack = {} } ]\n",
               "model.glb": glb(json.dumps(whole).encode(), buffer)}
     (root / "n.png").write_bytes(picture)
     subprocess.run([BUILD / "pack-normals", root / "n.png", "-o", root / "n.dds", "--quiet"], check=True)
@@ -231,7 +239,7 @@ def main():
     for name in LINES:
         text = subprocess.run([BUILD / f"{name}-normals", "--help", "--json"], capture_output=True, check=True).stdout
         tables[name] = [option for option in json.loads(text)["options"]
-                        if option["group"] != "Help" and option["names"][-1] != "--files-from"]
+                        if option["group"] != "Help" and option["names"][-1] not in LEFT_OUT]
 
     singles = [[f"{name}-normals", *line, *argument(option, value, line)]
                for name, line in LINES.items() for option in tables[name] for value in values_of(option)]
