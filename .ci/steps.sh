@@ -109,7 +109,7 @@ longest+='|^consumer.packages$|^samples.(release|build_drills)$'
 # compiler.
 # shellcheck disable=SC2034  # used by the scripts that source this file
 judgements='CheckData.(FindsPlantedDamage|FindsNoDamage|TellsEveryKnownDirection|CompressionOf|IntactMaps)'
-judgements+='|CheckThresholds|BakeData|IntegrateData|TransferData|DebandData|Guesses|FalseAlarms|OthersMatrix|MeshFit'
+judgements+='|CheckThresholds|BakeData|IntegrateData|TransferData|DebandData|Guesses|FalseAlarms|ExtrasMatrix|MeshFit'
 judgements+='|Efforts.NoneIsWorseThanACheaperOneOnRealMaps|EacSearch.FindsTheOptimum|PlainFit.(IsNever|Best)'
 judgements+='|AstcEncode.(IsCloser|MoreEffort)|RoundTrip.RepacksEveryRealTexture|StorageAngle|PngWrite.TakesNoMoreBytes'
 judgements+='|PngFilter.Paeth|Nearest.FillsFromTheNearestTexel|RdoStream|RdoOption.FilesAreSmaller'

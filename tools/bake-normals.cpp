@@ -12,10 +12,10 @@
 #include "batch/batch.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/extras.h"
 #include "options/ground.h"
 #include "options/heights.h"
 #include "options/mips.h"
-#include "options/others.h"
 #include "options/tiles.h"
 #include "tasks/written_levels.h"
 
@@ -59,7 +59,7 @@ private:
     cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
     cli::TileOptions tiles_;
-    cli::OtherOptions others_;
+    cli::ExtraOptions extras_;
 };
 
 BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -76,7 +76,7 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     reader_.color.add(command);
     output.add(command, cli::default_encodings(), "up");
     output.add_engines(command);
-    others_.add(command, output, nullptr);
+    extras_.add(command, output, nullptr);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
@@ -93,7 +93,7 @@ cli::OutputRules BakeNormals::rules() const {
     rules.shared = reader_.color.files();
     rules.amend = [this](cli::Task& task) {
         cli::HeightReader::add_header_file(task);
-        others_.amend(task);
+        extras_.amend(task);
     };
     if (files.tiles) rules.relate = [this](std::vector<cli::Task>& tasks) { tiles_.relate(tasks, wrap_); };
     return rules;
@@ -120,8 +120,8 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.tile = tiles_.tile_of(job.task);
     options.bake = kernel_.bake;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
-    others_.apply(options.mip);
-    options.others = others_.inputs(job);
+    extras_.apply(options.mip);
+    options.others = extras_.inputs(job);
     constexpr bool kKnown = true;
     const cli::OutputOptions own = output.of(job.task.engine);
     options.pack = own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);

@@ -47,7 +47,7 @@ private:
     }
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{{}, Container::dds, joins(), layers_.files()};
-        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        rules.amend = [this](cli::Task& task) { extras.amend(task); };
         return rules;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -72,7 +72,7 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     normals.add(command);
     output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base");
     output.add_engines(command);
-    others.add(command, output, &normals);
+    extras.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");
     wrap_.add(command, "what lies beyond the base's border; two words set x and y separately");
     running.add(command);
@@ -127,9 +127,9 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     options.blend.wrap_x = wrap_.x;
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
-    others.apply(options.source.unpack);
-    others.apply(options.mip);
-    options.others = others.inputs(job);
+    extras.apply(options.source.unpack);
+    extras.apply(options.mip);
+    options.others = extras.inputs(job);
     const cli::OutputOptions own = output.of(job.task.engine);
     options.pack = [own, &job](const SourceInfo& base) {
         return own.pack_options(own.format ? *own.format : cli::encoding_of(base, job.task), base.y_axis, base.y_known);
@@ -140,9 +140,9 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
 }
 
 // What a detail has beside its normals has no place in the blend.
-void note_other_data(cli::Job& job, const std::string& detail, const std::vector<OtherChannel>& others) {
+void note_extras(cli::Job& job, const std::string& detail, const std::vector<ExtraChannel>& others) {
     std::vector<std::string> names;
-    for (const OtherChannel& other : others)
+    for (const ExtraChannel& other : others)
         names.push_back(other.name == 'L' ? "the lengths of vectors" : std::string(1, other.name));
     job.warn(fmt::format("data beside the normals, in {}, are not blended: the output has there what the base has "
                          "(--drop: without this warning)",
@@ -158,7 +158,7 @@ Result<void> BlendNormals::process(cli::Job& job) {
     normals.note(job, job.task.input, blended->source);
     for (std::size_t k = 0; k < blended->details.size(); ++k) {
         SourceInfo detail = blended->details[k];
-        if (!detail.others.empty() && !normals.drops_others) note_other_data(job, with.layers[k].input, detail.others);
+        if (!detail.others.empty() && !normals.drops_extras) note_extras(job, with.layers[k].input, detail.others);
         detail.others.clear();  // only what the base has beside its normals goes along, or is missed
         normals.note(job, with.layers[k].input, detail);
     }

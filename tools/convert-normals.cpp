@@ -48,7 +48,7 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
         rules.models = conversion_.spaces.material();
-        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        rules.amend = [this](cli::Task& task) { extras.amend(task); };
         return rules;
     }
     [[nodiscard]] Encoding (*usual_encoding() const)(Container) {
@@ -74,7 +74,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     output.add(command, cli::default_encodings() + "; rgb8 in dds and ktx2 for object space",
                "as in the input; up if the space changes");
     output.add_engines(command);
-    others.add(command, output, &normals);
+    extras.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("convert-normals rock_n.png -o rock_obj.exr --mesh rock.glb --to object",
@@ -92,7 +92,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
         if (conversion_.spaces.from == Space::object && normals.measures_y)
             throw cli::UsageError("--y-in measured needs --from tangent");
         if (!conversion_.makes_object()) return;
-        if (!others.stores_z()) throw cli::UsageError("--blue needs tangent space: object space needs z");
+        if (!extras.stores_z()) throw cli::UsageError("--blue needs tangent space: object space needs z");
         if (mips_.mip.fade || mips_.mip.domain == MipDomain::slope)
             throw cli::UsageError("--fade and --mip-domain slope need tangent space");
         for (const cli::Engine* const engine : output.engines_or_none()) {
@@ -142,10 +142,10 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     const bool is_object = conversion_.spaces.from == Space::object;
     cli::Reading reading{true, false, {}, keep_length, doubt_y, is_object, model};
     UnpackOptions wanted = normals.options(job).unpack;
-    others.apply(wanted);
-    reading.others = wanted.others;
+    extras.apply(wanted);
+    reading.extras = wanted.others;
     reading.holds = [this, &job](const SourceInfo& info) {
-        return others.accounted_for(can_hold(packing(info, job.task).encoding));
+        return extras.accounted_for(can_hold(packing(info, job.task).encoding));
     };
     auto source = normals.read(job, job.task.map_path(), job.until(0.2), reading);
     if (!source) return source.error();
@@ -157,11 +157,11 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     if (!converted) return converted.error();
     source->chain.levels.clear();
     const PackOptions pack_with = packing(source->info, job.task);
-    if (auto put = put_others(converted->map, others.inputs(job), pack_with.encoding); !put)
+    if (auto put = put_others(converted->map, extras.inputs(job), pack_with.encoding); !put)
         return put.error().of(job.task.name());
     MipOptions mip = mips_.options(mips_.levels_for(job.task), {});
     mip.any_z = conversion_.makes_object();
-    others.apply(mip);
+    extras.apply(mip);
     const Extent whole = converted->map.extent();
     const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();

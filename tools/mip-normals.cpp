@@ -35,7 +35,7 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("normal maps; - is standard input");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
-    others.add(command, output, &normals);
+    extras.add(command, output, &normals);
     mips_.add(command, false, "all");
     wrap_.add(command, "what lies beyond the border; two words set x and y separately");
     roughness_.add(command, files);
@@ -56,7 +56,7 @@ cli::OutputRules MipNormals::rules() const {
     rules.batch = Container::dds;
     rules.amend = [this](cli::Task& task) {
         roughness_.amend(task);
-        others.amend(task);
+        extras.amend(task);
     };
     return rules;
 }

@@ -24,7 +24,7 @@ private:
         cli::OutputRules rules{Container::dds};
         rules.models = material_;
         rules.writes_models = true;
-        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        rules.amend = [this](cli::Task& task) { extras.amend(task); };
         return rules;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -43,7 +43,7 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
     output.add(command, cli::default_encodings(), "as in the input");
     output.add_engines(command);
-    others.add(command, output, &normals);
+    extras.add(command, output, &normals);
     mips_.add(command, true, "keep");
     wrap_.add(command, "what lies beyond the border of levels that are built; two words set x and y separately");
     running.add(command);

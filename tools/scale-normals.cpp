@@ -18,7 +18,7 @@ public:
 private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules;
-        rules.amend = [this](cli::Task& task) { others.amend(task); };
+        rules.amend = [this](cli::Task& task) { extras.amend(task); };
         return rules;
     }
     [[nodiscard]] PackFileOptions options(cli::Job&) const override {
@@ -48,7 +48,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     normals.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
-    others.add(command, output, &normals);
+    extras.add(command, output, &normals);
     running.add(command);
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",
                     "Twice as steep, all levels, the same encoding.");

@@ -35,7 +35,7 @@ private:
     bool all_levels_ = false;
     float scale_ = 1.0f;
     ScaleMode scale_mode_ = ScaleMode::slope;
-    cli::OtherFiles apart_;
+    cli::ExtraFiles apart_;
 };
 
 UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {

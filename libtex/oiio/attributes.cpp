@@ -69,10 +69,10 @@ std::string choose_swizzle(const std::string& word, std::optional<Swizzle>& to) 
 // KIND, or KIND,KIND of blue and alpha.
 std::string choose_kinds(const std::string& word, Wanted& wanted) {
     const std::size_t comma = word.find(',');
-    std::string wrong = choose(word.substr(0, comma), kOtherKindNames, wanted.blue);
+    std::string wrong = choose(word.substr(0, comma), kExtraKindNames, wanted.blue);
     if (!wrong.empty()) return wrong;
     wanted.alpha = wanted.blue;
-    return comma == std::string::npos ? "" : choose(word.substr(comma + 1), kOtherKindNames, wanted.alpha);
+    return comma == std::string::npos ? "" : choose(word.substr(comma + 1), kExtraKindNames, wanted.alpha);
 }
 
 std::string ignore(const std::string&, Wanted&) { return {}; }
@@ -141,16 +141,16 @@ void apply_mark(const ImageSpec& spec, Wanted& wanted) {
 
 // The encoding of these texels; nullopt if pack() makes none such. Files without formats of three channels hold those
 // with a fourth one, which matters only if there is data in it.
-std::optional<Encoding> encoding_of(const Texture& texture, OtherPlanes others) {
+std::optional<Encoding> encoding_of(const Texture& texture, ExtraSet extras) {
     const auto holds = [&](Encoding encoding, Format format) {
         Swizzle swizzle = encoding_info(encoding).swizzle;
-        if (others.blue && can_hold(encoding).blue) swizzle[2] = texture.swizzle[2];
+        if (extras.blue && can_hold(encoding).blue) swizzle[2] = texture.swizzle[2];
         return format == texture.format && layout_name(swizzle) == layout_name(texture.swizzle);
     };
     for (const Named<Encoding>& row : kEncodingNames) {
         const Format format = encoding_info(row.value).format;
         const FormatInfo info = format_info(format);
-        if (others.alpha || info.channels != 3 || info.has_blocks() || info.bits == 8) continue;
+        if (extras.alpha || info.channels != 3 || info.has_blocks() || info.bits == 8) continue;
         const std::optional<Format> wider = format_of(info.sample, info.bits, 4);
         if (wider && holds(row.value, *wider)) return row.value;
     }
@@ -213,11 +213,11 @@ Result<Reading> reading_of(const ImageSpec& config) {
     return reading;
 }
 
-void describe(const Texture& texture, const std::optional<Swizzle>& pixels, OtherPlanes others, ImageSpec& spec) {
+void describe(const Texture& texture, const std::optional<Swizzle>& pixels, ExtraSet extras, ImageSpec& spec) {
     const auto word = [&](const char* name, std::string_view value) { spec.attribute(name, std::string(value)); };
     word("tex:stored", name_of(kFormatNames, texture.format));
     word("tex:layout", layout_name(texture.swizzle));
-    if (const std::optional<Encoding> encoding = encoding_of(texture, others))
+    if (const std::optional<Encoding> encoding = encoding_of(texture, extras))
         word("tex:format", name_of(kEncodingNames, *encoding));
     std::string mark = pixels ? layout_name(*pixels) : "";
     if (texture.y_known && pixels) {

@@ -23,17 +23,10 @@ namespace tex::oiio {
 // The name of the format, of the file (tex.imageio.so) and of all attributes (tex:...).
 inline constexpr const char* kFormatName = "tex";
 
-// The channels of a picture for the data beside its normals, in the order in which the reader returns them.
-struct OtherName {
-    const char* channel;
-    bool OtherPlanes::*has;
-    Plane<float> NormalMap::*plane;
-};
-inline constexpr OtherName kOtherNames[] = {
-    {"A", &OtherPlanes::alpha, &NormalMap::alpha},
-    {"blue", &OtherPlanes::blue, &NormalMap::blue},
-    {"length", &OtherPlanes::length, &NormalMap::length},
-};
+// The channel of a picture for an extra channel of its normals. The reader returns them in the order of kExtras.
+[[nodiscard]] inline std::string channel_name(Extra extra) {
+    return extra == Extra::alpha ? "A" : std::string(name_of(kExtraNames, extra));
+}
 
 // What the attributes of a picture ask for when it is written.
 struct Wanted {
@@ -44,7 +37,7 @@ struct Wanted {
     WriteOptions write;
     bool keep_levels = true;  // the levels that were sent; otherwise they are built from the base level
     int levels = 0;           // that are built, as in MipOptions
-    OtherKind blue = OtherKind::mask, alpha = OtherKind::mask;  // what such levels get
+    ExtraKind blue = ExtraKind::mask, alpha = ExtraKind::mask;  // what such levels get
 };
 
 // Reads them. An attribute tex:... that does not exist, and a value that is not one of its words, is an error
@@ -59,9 +52,9 @@ struct Reading {
 };
 [[nodiscard]] Result<Reading> reading_of(const OIIO::ImageSpec& config);
 
-// Adds what the file states. `pixels` is the layout of the pixels, if they are those of normals, and `others` the data
+// Adds what the file states. `pixels` is the layout of the pixels, if they are those of normals, and `extras` the data
 // beside them.
-void describe(const Texture& texture, const std::optional<Swizzle>& pixels, OtherPlanes others, OIIO::ImageSpec& spec);
+void describe(const Texture& texture, const std::optional<Swizzle>& pixels, ExtraSet extras, OIIO::ImageSpec& spec);
 
 // Calls body(), which returns true or has called errorfmt() of `plugin`. An exception becomes an error, too.
 template <class Plugin, class Body>

@@ -60,10 +60,10 @@ std::size_t bytes_of(const TypeDesc& type, int channels, Extent extent) {
 }
 
 // Puts values beside the pixels: codes of 16 bits, or floats.
-void add_channels(const NormalMap& map, OtherPlanes others, bool as_floats, std::vector<std::byte>& pixels) {
+void add_channels(const NormalMap& map, ExtraSet extras, bool as_floats, std::vector<std::byte>& pixels) {
     std::vector<const Plane<float>*> planes;
-    for (const OtherName& name : kOtherNames) {
-        if (others.*name.has) planes.push_back(&(map.*name.plane));
+    for (const Extra extra : kExtras) {
+        if (extras[extra]) planes.push_back(&map[extra]);
     }
     const std::size_t size = as_floats ? sizeof(float) : sizeof(std::uint16_t);
     const Extent extent = map.extent();
@@ -173,40 +173,40 @@ Result<void> Input::load(const std::string& name, const ImageSpec& config) {
     const Extent extent = texture_.extent();
     if (normals) {
         // What cannot be unpacked is described, and fails when its pixels are read.
-        static_cast<void>(find_others(reading->has_lengths));
+        static_cast<void>(find_extras(reading->has_lengths));
     }
     m_spec = ImageSpec(extent.width, extent.height, normals ? 3 : info.channels, type());
     if (m_spec.nchannels == 1) m_spec.channelnames = {"Y"};
-    for (const OtherName& other : kOtherNames) {
-        if (!(others_.*other.has)) continue;
-        if (other.has == &OtherPlanes::alpha) m_spec.alpha_channel = m_spec.nchannels;
+    for (const Extra extra : kExtras) {
+        if (!extras_[extra]) continue;
+        if (extra == Extra::alpha) m_spec.alpha_channel = m_spec.nchannels;
         ++m_spec.nchannels;
-        m_spec.channelnames.emplace_back(other.channel);
+        m_spec.channelnames.push_back(channel_name(extra));
     }
     if (normals) m_spec.attribute("normalEncoding", "unsigned");
     // What is in A is no opacity: nothing may be divided by it.
     if (m_spec.alpha_channel >= 0) m_spec.attribute("oiio:UnassociatedAlpha", 1);
     std::optional<Swizzle> pixels;
     if (info.channels > 1) pixels = normals ? kSwizzleXyz : texture_.swizzle;
-    describe(texture_, pixels, others_, m_spec);
+    describe(texture_, pixels, extras_, m_spec);
     return {};
 }
 
 // Looks at the base level. Blue that does not vary, or repeats a component, is a part of a layout without z.
-Result<void> Input::find_others(bool has_lengths) {
+Result<void> Input::find_extras(bool has_lengths) {
     const auto is_free = [this](std::size_t channel) {
         const Component held = texture_.swizzle[channel];
         const bool is_part = held == Component::x || held == Component::y || held == Component::z;
         return static_cast<int>(channel) < format_info(texture_.format).channels && !is_part;
     };
-    others_ = {is_free(2) && texture_.swizzle[2] != Component::one, is_free(3), has_lengths};
-    if (others_ == OtherPlanes()) return {};
+    extras_ = {is_free(2) && texture_.swizzle[2] != Component::one, is_free(3), has_lengths};
+    if (extras_ == ExtraSet()) return {};
     const Result<NormalMap> base = unpacked(0);
-    others_ = {};
+    extras_ = {};
     if (!base) return base.error();
-    others_.alpha = !base->alpha.empty();
-    others_.blue = !base->blue.empty() && !is_constant(base->blue);
-    others_.length = !base->length.empty();
+    extras_.alpha = !base->alpha.empty();
+    extras_.blue = !base->blue.empty() && !is_constant(base->blue);
+    extras_.length = !base->length.empty();
     return {};
 }
 
@@ -223,7 +223,7 @@ TypeDesc Input::type() const {
 bool Input::close() {
     texture_ = Texture();
     pixels_ = {};
-    others_ = {};
+    extras_ = {};
     level_ = 0;
     made_ = -1;
     return true;
@@ -300,7 +300,7 @@ Result<NormalMap> Input::unpacked(int level) const {
     part.normal_encoding = texture_.normal_encoding;
     part.levels.assign(first, texture_.levels.begin() + level + 1);
     UnpackOptions options;
-    options.others = others_;
+    options.others = extras_;
     Result<MipChain> chain = unpack(part, options, {threads(), {}});
     if (!chain) return chain.error();
     return std::move(chain->levels.back());
@@ -310,8 +310,8 @@ Result<NormalMap> Input::unpacked(int level) const {
 Result<void> Input::make_normals() {
     Result<NormalMap> map = unpacked(level_);
     if (!map) return map.error();
-    NormalMap others;
-    for (const OtherName& name : kOtherNames) others.*name.plane = std::exchange((*map).*name.plane, {});
+    NormalMap extras;
+    for (const Extra extra : kExtras) extras[extra] = std::exchange((*map)[extra], {});
 
     const bool as_floats = what_ == Pixels::floats;
     PackOptions options;
@@ -323,10 +323,10 @@ Result<void> Input::make_normals() {
     if (!colours) return colours.error();
     pixels_ = std::move(colours->levels.front().bytes);
     if (as_floats) to_colours(pixels_);
-    if (others_ == OtherPlanes()) return {};
+    if (extras_ == ExtraSet()) return {};
     for (Plane<float> NormalMap::*const plane : {&NormalMap::x, &NormalMap::y, &NormalMap::z})
-        others.*plane = std::move(chain.levels.front().*plane);
-    add_channels(others, others_, as_floats, pixels_);
+        extras.*plane = std::move(chain.levels.front().*plane);
+    add_channels(extras, extras_, as_floats, pixels_);
     return {};
 }
 

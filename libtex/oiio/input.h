@@ -42,14 +42,14 @@ private:
     [[nodiscard]] Result<void> make_channels();
     [[nodiscard]] Result<void> make_normals();
     [[nodiscard]] Result<NormalMap> unpacked(int level) const;
-    [[nodiscard]] Result<void> find_others(bool has_lengths);
+    [[nodiscard]] Result<void> find_extras(bool has_lengths);
     [[nodiscard]] OIIO::TypeDesc type() const;
 
     mutable bool named_ = false;  // by its name with the suffix .tex: see supports()
     std::string path_;
     Texture texture_;
     Pixels what_ = Pixels::stored;
-    OtherPlanes others_;  // the data beside the normals, which are further channels
+    ExtraSet extras_;  // the data beside the normals, which are further channels
     int level_ = 0;
     std::vector<std::byte> pixels_;  // of level made_, rows from the top, unless they are the stored ones
     int made_ = -1;

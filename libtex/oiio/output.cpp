@@ -118,7 +118,7 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
     if (spec.deep || spec.depth > 1) return mistake(name, "deep pictures and volumes are no normal maps");
     name_ = name;
     if (const Result<void> chosen = choose_channels(spec); !chosen) return chosen;
-    const int channels = spec.nchannels - static_cast<int>(others_.size());
+    const int channels = spec.nchannels - static_cast<int>(extras_.size());
     Result<Wanted> wanted = wanted_of(spec);
     if (!wanted) return mistake(name, wanted.error().reason);
     const Encoding encoding = wanted->format.value_or(default_encoding(*container));
@@ -126,10 +126,11 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
         return mistake(name, "a " + std::string(name_of(kContainerNames, *container)) + " file cannot hold " +
                                  std::string(name_of(kEncodingNames, encoding)) +
                                  "; set the attribute tex:format to another encoding");
-    for (const Other& other : others_) {
-        if (!(can_hold(encoding).*other.name->has))
+    for (const Sent& sent : extras_) {
+        if (!can_hold(encoding)[sent.extra])
             return mistake(name, std::string(name_of(kEncodingNames, encoding)) + " has no room for the channel " +
-                                     other.name->channel + "; leave it out, or set tex:format to another encoding");
+                                     channel_name(sent.extra) +
+                                     "; leave it out, or set tex:format to another encoding");
     }
     if (!can_hold_levels(*container) && !wanted->keep_levels && wanted->levels != 1)
         return mistake(name, "this file type holds one level; set the attribute tex:mips to 1 or keep");
@@ -150,14 +151,13 @@ Result<void> Output::begin(const std::string& name, const ImageSpec& spec) {
 
 // Channels called blue and length hold data beside the normals; the others are those of the normals.
 Result<void> Output::choose_channels(const ImageSpec& spec) {
-    others_.clear();
+    extras_.clear();
     for (std::size_t c = 0; c < spec.channelnames.size(); ++c) {
-        for (const OtherName& name : kOtherNames) {
-            const bool is_named = name.has != &OtherPlanes::alpha && spec.channelnames[c] == name.channel;
-            if (is_named) others_.push_back({c, &name, {}});
+        for (const Extra extra : {Extra::blue, Extra::length}) {
+            if (spec.channelnames[c] == channel_name(extra)) extras_.push_back({c, extra, {}});
         }
     }
-    const int channels = spec.nchannels - static_cast<int>(others_.size());
+    const int channels = spec.nchannels - static_cast<int>(extras_.size());
     if (channels >= 2 && channels <= 4) return {};
     return mistake(name_, "a normal map has 2 to 4 channels, not " + std::to_string(channels) +
                               ", besides those called blue and length");
@@ -185,7 +185,7 @@ Result<void> Output::add_level(const ImageSpec& spec) {
     m_spec.set_format(type);
     m_spec.channelformats.clear();
     pixels_.levels.push_back({extent, std::vector<std::byte>(level_bytes(pixels_.format, extent))});
-    if (!others_.empty()) sent_.assign(m_spec.image_bytes(), std::byte{0});
+    if (!extras_.empty()) sent_.assign(m_spec.image_bytes(), std::byte{0});
     const bool tiled = spec.tile_width > 0 && spec.tile_height > 0;
     next_ = 0;
     end_ = !tiled ? spec.height
@@ -233,14 +233,14 @@ bool Output::write_tile(int x, int y, int z, TypeDesc format, const void* data, 
 
 // Takes the channels of a level apart.
 void Output::split_level() {
-    if (others_.empty()) return;
+    if (extras_.empty()) return;
     const auto channels = static_cast<std::size_t>(m_spec.nchannels);
     const std::size_t size = m_spec.format.size();
     const Extent extent = pixels_.levels.back().extent;
     std::vector<int> other_of(channels, -1);
-    for (std::size_t k = 0; k < others_.size(); ++k) {
-        other_of[others_[k].channel] = static_cast<int>(k);
-        others_[k].levels.emplace_back(extent);
+    for (std::size_t k = 0; k < extras_.size(); ++k) {
+        other_of[extras_[k].channel] = static_cast<int>(k);
+        extras_[k].levels.emplace_back(extent);
     }
     const std::byte* from = sent_.data();
     std::byte* to = pixels_.levels.back().bytes.data();
@@ -250,7 +250,7 @@ void Output::split_level() {
                 if (other_of[c] < 0) {
                     to = std::copy_n(from, size, to);
                 } else {
-                    others_[static_cast<std::size_t>(other_of[c])].levels.back().at(i, j) =
+                    extras_[static_cast<std::size_t>(other_of[c])].levels.back().at(i, j) =
                         value_of(m_spec.format, from);
                 }
             }
@@ -260,10 +260,8 @@ void Output::split_level() {
 
 // Whether colours may be multiplied by an alpha after them.
 bool Output::has_alpha() const {
-    const auto is_before = [this](const Other& other) {
-        return static_cast<int>(other.channel) < m_spec.alpha_channel;
-    };
-    const auto before = std::count_if(others_.begin(), others_.end(), is_before);
+    const auto is_before = [this](const Sent& sent) { return static_cast<int>(sent.channel) < m_spec.alpha_channel; };
+    const auto before = std::count_if(extras_.begin(), extras_.end(), is_before);
     return format_info(pixels_.format).channels == 4 && m_spec.alpha_channel - before == 3 &&
            m_spec.get_int_attribute("oiio:UnassociatedAlpha") == 0;
 }
@@ -300,7 +298,7 @@ bool Output::close() {
         if (open_) report(finish());
         open_ = false;
         pixels_ = {};
-        others_.clear();
+        extras_.clear();
         sent_ = {};
         return !std::exchange(failed_, false);  // programs may look at nothing else
     });
@@ -316,9 +314,8 @@ Result<MipChain> Output::levels() {
     }
     Result<MipChain> sent = unpack(pixels_, how, execution);
     if (!sent) return sent;
-    for (Other& other : others_) {
-        for (std::size_t k = 0; k < sent->levels.size(); ++k)
-            sent->levels[k].*other.name->plane = std::move(other.levels[k]);
+    for (Sent& extra : extras_) {
+        for (std::size_t k = 0; k < sent->levels.size(); ++k) sent->levels[k][extra.extra] = std::move(extra.levels[k]);
     }
     if (wanted_.keep_levels) return sent;
     MipOptions options;

@@ -40,7 +40,7 @@ private:
     [[nodiscard]] Result<bool> is_multiplied_by_alpha() const;
     [[nodiscard]] Result<void> finish_level();
     [[nodiscard]] Result<void> choose_channels(const OIIO::ImageSpec& spec);
-    [[nodiscard]] std::vector<std::byte>& sent() { return others_.empty() ? pixels_.levels.back().bytes : sent_; }
+    [[nodiscard]] std::vector<std::byte>& sent() { return extras_.empty() ? pixels_.levels.back().bytes : sent_; }
     void split_level();
     [[nodiscard]] Result<MipChain> levels();
     [[nodiscard]] Result<void> finish();
@@ -53,13 +53,13 @@ private:
     Container container_ = Container::dds;
     Wanted wanted_;
     Texture pixels_;  // as they were sent, without channels that have names of their own:
-    struct Other {
+    struct Sent {
         std::size_t channel;
-        const OtherName* name;
+        Extra extra;
         std::vector<Plane<float>> levels;
     };
-    std::vector<Other> others_;
-    std::vector<std::byte> sent_;  // all channels of a level, if there are others
+    std::vector<Sent> extras_;
+    std::vector<std::byte> sent_;  // all channels of a level, if there are extra ones
     bool multiplied_ = false;      // by alpha
     std::int64_t next_ = 0;        // the number of the scanline or tile of this level that comes next
     std::int64_t end_ = 0;         // the number of them

@@ -139,25 +139,24 @@ Fade Convert<Fade>::from(py::handle given, std::string_view name) {
 
 std::string Convert<Fade>::shown(Fade value) { return fmt::format("({}, {})", value.first, value.last); }
 
-const OtherName& other_from(std::string_view word, std::string_view name) {
-    const auto* const row = std::find_if(std::begin(kOtherNames), std::end(kOtherNames),
-                                         [&word](const OtherName& other) { return word == other.name; });
-    need(row != std::end(kOtherNames), name, shown_text(word) + " must be one of 'blue', 'alpha', 'length'");
-    return *row;
+Extra extra_from(std::string_view word, std::string_view name) {
+    const std::optional<Extra> extra = find_by_name(kExtraNames, word);
+    need(extra.has_value(), name, shown_text(word) + " must be one of 'blue', 'alpha', 'length'");
+    return *extra;
 }
 
-OtherPlanes Convert<OtherPlanes>::from(py::handle given, std::string_view name) {
+ExtraSet Convert<ExtraSet>::from(py::handle given, std::string_view name) {
     constexpr std::string_view kWanted = "a sequence of 'blue', 'alpha' and 'length'";
     if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) raise_type(name, kWanted, given);
-    OtherPlanes planes;
-    for (const py::handle item : given) planes.*other_from(text_from(item, name), name).has = true;
+    ExtraSet planes;
+    for (const py::handle item : given) planes[extra_from(text_from(item, name), name)] = true;
     return planes;
 }
 
-std::string Convert<OtherPlanes>::shown(OtherPlanes value) {
+std::string Convert<ExtraSet>::shown(ExtraSet value) {
     std::string names;
-    for (const OtherName& other : kOtherNames) {
-        if (value.*other.has) names += (names.empty() ? "" : ", ") + shown_text(other.name);
+    for (const auto& [extra, name, meaning] : kExtraNames) {
+        if (value[extra]) names += (names.empty() ? "" : ", ") + shown_text(name);
     }
     return "[" + names + "]";
 }

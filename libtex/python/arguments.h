@@ -77,7 +77,7 @@ TEX_PYTHON_WORDS(LightKind);
 TEX_PYTHON_WORDS(Metric);
 TEX_PYTHON_WORDS(MipDomain);
 TEX_PYTHON_WORDS(MipFilter);
-TEX_PYTHON_WORDS(OtherKind);
+TEX_PYTHON_WORDS(ExtraKind);
 TEX_PYTHON_WORDS(RepairClass);
 TEX_PYTHON_WORDS(RepairKind);
 TEX_PYTHON_WORDS(RoughnessModel);
@@ -214,25 +214,14 @@ struct Convert<Swizzle> {
     static std::string type() { return "str"; }
 };
 
-// The data beside normals: attributes of a tex.NormalMap, keys of dicts, words of `keep`.
-struct OtherName {
-    const char* name;
-    Plane<float> NormalMap::*plane;
-    bool OtherPlanes::*has;
-    std::optional<OtherData> OtherInputs::*input;
-};
-inline constexpr OtherName kOtherNames[] = {{"blue", &NormalMap::blue, &OtherPlanes::blue, &OtherInputs::blue},
-                                            {"alpha", &NormalMap::alpha, &OtherPlanes::alpha, &OtherInputs::alpha},
-                                            {"length", &NormalMap::length, &OtherPlanes::length, &OtherInputs::length}};
-
-// The place with that name. Raises ValueError for others.
-[[nodiscard]] const OtherName& other_from(std::string_view word, std::string_view name);
+// The extra channel with that name: an attribute of a tex.NormalMap, a key of a dict. Raises ValueError for others.
+[[nodiscard]] Extra extra_from(std::string_view word, std::string_view name);
 
 // The names of planes: ["alpha"]
 template <>
-struct Convert<OtherPlanes> {
-    static OtherPlanes from(py::handle given, std::string_view name);
-    static std::string shown(OtherPlanes value);
+struct Convert<ExtraSet> {
+    static ExtraSet from(py::handle given, std::string_view name);
+    static std::string shown(ExtraSet value);
     static std::string type() { return "Sequence[Literal['blue', 'alpha', 'length']]"; }
 };
 

@@ -183,14 +183,13 @@ py::array normals_of(NormalMap map) {
 }  // namespace
 
 py::array array_of(NormalMap map) {
-    py::dict others;
-    for (const OtherName& other : kOtherNames) {
-        Plane<float>& plane = map.*other.plane;
-        if (!plane.empty()) others[other.name] = array_of(std::move(plane));
+    py::dict extras;
+    for (const auto& [extra, name, meaning] : kExtraNames) {
+        if (!map[extra].empty()) extras[py::str(std::string(name))] = array_of(std::move(map[extra]));
     }
     py::array normals = normals_of(std::move(map));
-    if (others.empty()) return normals;
-    return normal_map_class()(normals, **others);
+    if (extras.empty()) return normals;
+    return normal_map_class()(normals, **extras);
 }
 
 py::list arrays_of(MipChain chain) {
@@ -257,14 +256,14 @@ Plane<float> kept_plane_from(const py::object& from, const std::string& name, Sh
     return Plane<float>(plane.extent(), plane.stride(), std::shared_ptr<float>(owner, plane.row(0)));
 }
 
-void add_others(py::handle from, std::string_view name, Sharing sharing, NormalMap& map) {
+void add_extras(py::handle from, std::string_view name, Sharing sharing, NormalMap& map) {
     if (!py::isinstance<py::array>(from) || !py::isinstance(from, normal_map_class())) return;
-    for (const OtherName& other : kOtherNames) {
-        const py::object given = from.attr(other.name);
+    for (const auto& [extra, word, meaning] : kExtraNames) {
+        const py::object given = from.attr(py::str(std::string(word)));
         if (given.is_none()) continue;
-        const std::string full = fmt::format("{}.{}", name, other.name);
-        map.*other.plane = kept_plane_from(given, full, sharing);
-        need_equal((map.*other.plane).extent(), map.extent(), full);
+        const std::string full = fmt::format("{}.{}", name, word);
+        map[extra] = kept_plane_from(given, full, sharing);
+        need_equal(map[extra].extent(), map.extent(), full);
     }
 }
 
@@ -303,7 +302,7 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing, Norm
     const bool is_base = name.find('[') == std::string_view::npos || name.ends_with("[0]");  // others may be short
     need(!is_base || !looks_like_colours(map), name,
          "values from 0 to 1 look like colours, (n + 1) / 2; unpack() makes normals of them");
-    add_others(from, name, sharing, map);
+    add_extras(from, name, sharing, map);
     return map;
 }
 

@@ -68,28 +68,17 @@ void read_checks(const Checking& given, Checks& checks) {
 namespace {
 
 // The keywords of check_model().
-struct CheckingModels {
-    py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
+struct CheckingModels : Judging {
     std::string material;
     Decoder decoder = Decoder::gltf;
     std::optional<TangentSource> tangents;
 
-    [[nodiscard]] Checking checks() const {
-        Checking same;
-        same.require = require;
-        same.enable = enable;
-        same.disable = disable;
-        same.severity = severity;
-        return same;
-    }
+    [[nodiscard]] Checking checks() const { return {*this}; }
 };
 
 template <class F>
 void each_field(CheckingModels& o, F& f) {
-    f("require", o.require, "dict[str, str | int | bool] | None");
-    f("enable", o.enable, "Sequence[str] | None");
-    f("disable", o.disable, "Sequence[str] | None");
-    f("severity", o.severity, "dict[str, str] | None");
+    each_judging_field(o, f);
     f("material", o.material);
     f("decoder", o.decoder);
     f("tangents", o.tangents);

@@ -13,9 +13,21 @@
 
 namespace tex::python {
 
-// The keywords of check() and check_file().
-struct Checking {
+// Which rules count, and how much.
+struct Judging {
     py::object require = py::none(), enable = py::none(), disable = py::none(), severity = py::none();
+};
+
+template <class F>
+void each_judging_field(Judging& o, F& f) {
+    f("require", o.require, "dict[str, str | int | bool] | None");
+    f("enable", o.enable, "Sequence[str] | None");
+    f("disable", o.disable, "Sequence[str] | None");
+    f("severity", o.severity, "dict[str, str] | None");
+}
+
+// The keywords of check() and check_file().
+struct Checking : Judging {
     py::object height = py::none(), mesh = py::none();
     bool any_length = false;
     std::optional<Swizzle> swizzle;
@@ -24,10 +36,7 @@ struct Checking {
 
 template <class F>
 void each_field(Checking& o, F& f) {
-    f("require", o.require, "dict[str, str | int | bool] | None");
-    f("enable", o.enable, "Sequence[str] | None");
-    f("disable", o.disable, "Sequence[str] | None");
-    f("severity", o.severity, "dict[str, str] | None");
+    each_judging_field(o, f);
     f("height", o.height, "ArrayLike | HeightField | None");
     f("mesh", o.mesh, "SelectedPart | None");
     f("decoder", o.decoder);

@@ -135,7 +135,7 @@ py::dict describe(const SourceInfo& info) {
     facts["not_finite"] = info.not_finite;
     facts["background"] = info.background;
     py::list others;
-    for (const OtherChannel& other : info.others) {
+    for (const ExtraChannel& other : info.others) {
         py::dict channel;
         channel["name"] = std::string(1, other.name);
         channel["least"] = other.least;

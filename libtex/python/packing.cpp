@@ -37,10 +37,11 @@ void each_field(BlockKeywords& o, F& f) {
 void need_room(const MipChain& chain, py::handle from, const char* name, Encoding encoding) {
     if (is_path(from) || py::isinstance<Image>(from) || py::isinstance<Texture>(from)) return;
     for (const NormalMap& level : chain.levels) {
-        for (const OtherName& other : kOtherNames) {
-            if ((level.*other.plane).empty() || can_hold(encoding).*other.has) continue;
+        for (const Extra extra : {Extra::blue, Extra::alpha, Extra::length}) {
+            if (level[extra].empty() || can_hold(encoding)[extra]) continue;
             throw py::value_error(fmt::format("{}: {} has no room for {}; NormalMap(n, {}=None) leaves it out", name,
-                                              name_of(kEncodingNames, encoding), other.name, other.name));
+                                              name_of(kEncodingNames, encoding), name_of(kExtraNames, extra),
+                                              name_of(kExtraNames, extra)));
         }
     }
 }

@@ -54,14 +54,14 @@ std::function<PackOptions(const SourceInfo&)> pack_by(const PackFields& fields, 
 constexpr const char* kOthers = "dict[str, ArrayLike | float | str] | None";
 
 // The data of a dict: of each of blue, alpha and length a number, an array (height, width), or the word 'heights'.
-OtherInputs others_from(py::handle given, bool has_heights) {
-    OtherInputs inputs;
+ExtraInputs extras_from(py::handle given, bool has_heights) {
+    ExtraInputs inputs;
     if (given.is_none()) return inputs;
     if (!py::isinstance<py::dict>(given)) raise_type("others", "a dict of 'blue', 'alpha' and 'length'", given);
     for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
-        const std::string place = text_from(key, "others");
-        const std::string name = fmt::format("others['{}']", place);
-        OtherData& data = (inputs.*other_from(place, "others").input).emplace();
+        const std::string word = text_from(key, "others");
+        const std::string name = fmt::format("others['{}']", word);
+        ExtraData& data = inputs[extra_from(word, "others")].emplace();
         if (py::isinstance<py::str>(value)) {
             need(has_heights && text_from(value, name) == "heights", name,
                  has_heights ? "the word is 'heights'" : "must be a number or an array");
@@ -93,11 +93,26 @@ py::dict written(const Report& report) {
     return facts;
 }
 
-struct BakeFields {
-    std::optional<float> bumpiness_x, bumpiness_y;  // without them, what the file states
-    BakeFileOptions file;
+// What is written of a map that was read.
+template <class Report>
+py::dict written_map(const Report& report) {
+    py::dict facts = written(report);
+    facts["encoding"] = word_of(report.pack.encoding);
+    facts["y_axis"] = word_of(report.pack.y_axis);
+    facts["source"] = describe(report.source);
+    return facts;
+}
+
+// The keywords of a verb from file to file.
+template <class Options>
+struct FileFields {
+    Options file;
     PackFields pack;
     py::object others = py::none();
+};
+
+struct BakeFields : FileFields<BakeFileOptions> {
+    std::optional<float> bumpiness_x, bumpiness_y;  // without them, what the file states
 };
 
 template <class F>
@@ -125,7 +140,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
         options.strength = [strength](Extent) { return strength; };
     }
     options.pack = pack_options(fields.pack, output.container, YAxis::up, true);
-    options.others = others_from(fields.others, true);
+    options.others = extras_from(fields.others, true);
     const BakeFileReport report =
         running.run([&](const Execution& e) { return bake_file(input, output.path, output.container, options, e); });
     py::dict facts = written(report);
@@ -147,11 +162,7 @@ py::object baked(Call& call, BakeFields& fields, Running& running) {
     return facts;
 }
 
-struct RepackFields {
-    PackFileOptions file;
-    PackFields pack;
-    py::object others = py::none();
-};
+using RepackFields = FileFields<PackFileOptions>;
 
 template <class F>
 void each_field(RepackFields& o, F& f) {
@@ -171,21 +182,13 @@ py::object repacked(Call& call, RepackFields& fields, Running& running) {
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
-    options.others = others_from(fields.others, false);
+    options.others = extras_from(fields.others, false);
     const PackFileReport report =
         running.run([&](const Execution& e) { return pack_file(input, output.path, output.container, options, e); });
-    py::dict facts = written(report);
-    facts["encoding"] = word_of(report.pack.encoding);
-    facts["y_axis"] = word_of(report.pack.y_axis);
-    facts["source"] = describe(report.source);
-    return facts;
+    return written_map(report);
 }
 
-struct BlendFields {
-    BlendFileOptions file;
-    PackFields pack;
-    py::object others = py::none();
-};
+using BlendFields = FileFields<BlendFileOptions>;
 
 template <class F>
 void each_field(BlendFields& o, F& f) {
@@ -222,13 +225,10 @@ py::object blended(Call& call, BlendFields& fields, Running& running) {
     const std::string input = path_from(call["input"], "input");
     const Output output = output_of(call);
     options.pack = pack_by(fields.pack, output.container);
-    options.others = others_from(fields.others, false);
+    options.others = extras_from(fields.others, false);
     const BlendFileReport report =
         running.run([&](const Execution& e) { return blend_file(input, output.path, output.container, options, e); });
-    py::dict facts = written(report);
-    facts["encoding"] = word_of(report.pack.encoding);
-    facts["y_axis"] = word_of(report.pack.y_axis);
-    facts["source"] = describe(report.source);
+    py::dict facts = written_map(report);
     py::list details;
     for (const SourceInfo& info : report.details) details.append(describe(info));
     facts["details"] = details;

@@ -10,7 +10,7 @@
 #include "fields/blend_fields.h"
 #include "fields/field_check.h"
 #include "rows/blend_rows.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/usable.h"
 #include "stream/placed_map.h"
 #include "threads/no_throw.h"
@@ -33,17 +33,15 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
         maps.layers.push_back({layer, *detail});
     }
     NormalMap result(extent);
-    const OtherPlanes beside = others_of(base.levels.front());
-    for (const OtherPlace& place : kOtherPlaces) {
-        if (beside.*place.has) result.*place.plane = Plane<float>(extent);
-    }
+    const ExtraSet beside = extras_of(base.levels.front());
+    add_planes(result, beside);
     const int grain = std::max(1, (1 << 15) / extent.width);
     const auto blended = parallel_for(execution, extent.height, grain, [&](int begin, int end) {
         BlendRows rows(maps);
         for (int j = begin; j < end; ++j) {
             rows.make(j, {result.x.row(j), result.y.row(j), result.z.row(j)});
-            for (const OtherPlace& place : kOtherPlaces) {
-                if (beside.*place.has) rows.make_other(place.plane, (result.*place.plane).row(j));
+            for (const Extra extra : kExtras) {
+                if (beside[extra]) rows.make_extra(extra, result[extra].row(j));
             }
         }
     });

@@ -15,6 +15,7 @@
 #include "checks/context.h"
 #include "checks/convention_rules.h"
 #include "checks/damage_rules.h"
+#include "checks/extra_rules.h"
 #include "checks/field_rules.h"
 #include "checks/file_rules.h"
 #include "checks/findings.h"
@@ -23,7 +24,6 @@
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
 #include "checks/model_rules.h"
-#include "checks/other_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/picture_kind.h"
 #include "checks/rules.h"
@@ -162,7 +162,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         check_file_rules(context, findings);
         const PictureKind kind = check_kind_rules(context, findings);
         check_value_rules(context, findings);
-        if (auto done = check_other_rules(context, findings); !done) return done.error();
+        if (auto done = check_extra_rules(context, findings); !done) return done.error();
         if (auto done = check_damage_rules(context, findings); !done) return done.error();
         if (auto done = check_sign_rules(context, findings); !done) return done.error();
         if (auto done = check_field_rules(context, findings); !done) return done.error();

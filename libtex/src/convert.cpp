@@ -13,7 +13,7 @@
 #include "fields/mesh_fields.h"
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/usable.h"
 #include "surface/nearest.h"
 #include "threads/no_throw.h"
@@ -184,9 +184,7 @@ Result<ConvertedMap> convert(const NormalMap& map, const TangentSpace& space, Di
             return Error{ErrorCode::bad_option, space.file, "its triangles cover no texel of the map"};
         const std::int64_t width = std::min(padding, 2 * kMaxExtent) - gutter;
         if (const auto padded = pad(result, width, execution, {0.7, 1.0}); !padded) return padded.error();
-        for (const OtherPlace& place : kOtherPlaces) {
-            if (!(map.*place.plane).empty()) result.map.*place.plane = (map.*place.plane).clone();
-        }
+        for (const Extra extra : kExtras) result.map[extra] = map[extra].clone();
         return result;
     });
 }

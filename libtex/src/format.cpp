@@ -10,7 +10,7 @@
 #include "rows/codecs.h"
 
 namespace tex::inline v1 {
-OtherPlanes can_hold(Encoding encoding) {
+ExtraSet can_hold(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
     const FormatInfo info = format_info(format);
     const bool has_z = swizzle[2] == Component::z;

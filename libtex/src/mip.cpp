@@ -18,7 +18,7 @@
 #include "rows/border.h"
 #include "rows/mip_rows.h"
 #include "rows/usable.h"
-#include "stream/other_levels.h"
+#include "stream/extra_levels.h"
 #include "threads/no_throw.h"
 #include "threads/parallel.h"
 
@@ -138,7 +138,7 @@ Result<MipChain> build_mip_chain(NormalMap base, const MipOptions& options, cons
             const auto last = finish_level(chain.levels.back(), all, count - 1, execution, {done, 1.0});
             if (!last) return last.error();
         }
-        if (const auto added = add_others(chain, all, execution); !added) return added.error();
+        if (const auto added = add_extras(chain, all, execution); !added) return added.error();
         chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);
         return chain;
     });

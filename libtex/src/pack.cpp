@@ -12,7 +12,7 @@
 #include "fields/pack_fields.h"
 #include "kernels/encode.h"
 #include "rows/codecs.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/pack_rows.h"
 #include "rows/rdo_rows.h"
 #include "rows/usable.h"
@@ -29,8 +29,8 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
     const EncodingInfo encoding = encoding_info(options.encoding);
     Texture texture;
     texture.format = encoding.format;
-    const OtherPlanes others = others_of(chain.levels[0]);
-    texture.swizzle = swizzle_with(options.encoding, others);
+    const ExtraSet extras = extras_of(chain.levels[0]);
+    texture.swizzle = swizzle_with(options.encoding, extras);
     texture.swizzle_known = true;
     texture.y_axis = options.y_axis;
     texture.y_known = options.y_known;
@@ -57,7 +57,7 @@ Result<Texture> pack_chain(const MipChain& chain, const PackOptions& options, co
         const Result<void> result = parallel_for(
             execution, extent.height, grain,
             [&](int begin, int end) {
-                pack_rows(map, others, extent.height, options, begin, end, packed.bytes.data(), bands, tally);
+                pack_rows(map, extras, extent.height, options, begin, end, packed.bytes.data(), bands, tally);
             },
             span);
         if (!result) return result.error();
@@ -74,8 +74,7 @@ Result<PackedTexture> pack(const MipChain& chain, const PackOptions& options, co
     return no_throw(execution, [&]() -> Result<PackedTexture> {
         if (auto usable = check_usable(chain); !usable) return usable.error();
         if (auto valid = validate(options); !valid) return valid.error();
-        if (const NormalMap& base = chain.levels.front(); !base.blue.empty() && !base.length.empty())
-            return bad_option("blue and length exclude each other: without z, a vector has no length");
+        if (auto fit = check_together(extras_of(chain.levels.front())); !fit) return fit.error();
         RdoTally tally;
         Result<Texture> texture = pack_chain(chain, options, execution, &tally);
         if (!texture) return texture.error();

@@ -12,20 +12,13 @@
 #include "rows/usable.h"
 #include "stream/bake_stream.h"
 #include "stream/blend_stream.h"
+#include "stream/given_extras.h"
 #include "stream/pack_stream.h"
 #include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 
 namespace {
-
-// Errors: bad_option if a command that bakes nothing is to store heights.
-Result<void> check_no_heights(const OtherInputs& others) {
-    for (const auto* data : {&others.blue, &others.alpha, &others.length}) {
-        if (*data && (*data)->heights) return bad_option("others: there are no heights, only normals");
-    }
-    return {};
-}
 
 // Errors: bad_option if there are several outputs, and the bytes of one are to stay in memory.
 Result<void> check_one_output(const WriteOptions& write, bool has_more) {
@@ -44,7 +37,7 @@ Result<void> validate(const BakeFileOptions& options) {
 
 Result<void> validate(const PackFileOptions& options) {
     const bool has_more =
-        options.level_names || options.roughness || options.blue_file || options.alpha_file || options.length_file;
+        options.level_names || options.roughness || options.apart.blue || options.apart.alpha || options.apart.length;
     if (auto valid = check_one_output(options.write, has_more); !valid) return valid;
     if (options.level && *options.level < 0) return bad_option("level: must be 0 or more");
     if (options.scale) {

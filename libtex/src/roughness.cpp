@@ -11,8 +11,8 @@
 #include "rows/mip_rows.h"
 #include "rows/roughness_rows.h"
 #include "rows/usable.h"
+#include "stream/extra_levels.h"
 #include "stream/material_roughness.h"
-#include "stream/other_levels.h"
 #include "threads/no_throw.h"
 #include "threads/parallel.h"
 
@@ -45,7 +45,7 @@ Result<RoughnessChain> build_chain(const NormalMap& base, const Plane<float>& ro
     if (!filled) return filled.error();
 
     auto smaller =
-        smaller_levels(base, std::move(alpha2), OtherKind::roughness, model, options, count, execution, {done, 1.0});
+        smaller_levels(base, std::move(alpha2), ExtraKind::roughness, model, options, count, execution, {done, 1.0});
     if (!smaller) return smaller.error();
     for (Plane<float>& level : *smaller) chain.levels.push_back(std::move(level));
     chain.levels.erase(chain.levels.begin(), chain.levels.begin() + first);

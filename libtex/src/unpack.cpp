@@ -11,7 +11,7 @@
 #include "kernels/unpack.h"
 #include "rows/channel_names.h"
 #include "rows/decode_rows.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/stored_rows.h"
 #include "rows/unpack_rows.h"
 #include "rows/usable.h"
@@ -23,12 +23,10 @@ namespace {
 
 constexpr const char* kChannelNames[] = {"R", "G", "B", "A"};
 constexpr int kMostStripRows = 12;  // the greatest height of a block
-constexpr int kBlue = 2, kAlpha = 3;
 
-// The rows of one strip, for x, y, z, blue and alpha, padded to whole vectors. The rows of what is not there are null.
-constexpr int kComponents = 5;
+// The rows of one strip, padded to whole vectors: in each, the channels. Those that are not read are null.
 struct StripRows {
-    const float* component[kComponents][kMostStripRows] = {};
+    const float* row[kMostStripRows][4] = {};
 };
 
 // Provides the rows of a texture's level, decoded to scratch memory.
@@ -36,20 +34,19 @@ struct LevelReader {
     Format format;
     const Level& level;
     Sources sources;
-    OtherPlanes others;
+    ExtraSet extras;
 
     [[nodiscard]] Extent extent() const { return level.extent; }
     [[nodiscard]] int strip_rows() const { return strip_rows_of(format); }
 
     StripRows read(int strip, Plane<float>& scratch) const {
-        const int channels[kComponents] = {sources.x, sources.y, sources.z, others.blue ? kBlue : -1,
-                                           others.alpha ? kAlpha : -1};
+        const std::array<bool, 4> wanted = channels_read(sources, extras);
         ChannelRows rows;
         StripRows out;
-        for (int k = 0; k < kComponents; ++k) {
-            if (channels[k] < 0) continue;
-            rows.channel[channels[k]] = scratch.row(k * strip_rows());
-            for (int r = 0; r < strip_rows(); ++r) out.component[k][r] = scratch.row(k * strip_rows() + r);
+        for (int c = 0; c < 4; ++c) {
+            if (!wanted[static_cast<std::size_t>(c)]) continue;
+            rows.channel[c] = scratch.row(c * strip_rows());
+            for (int r = 0; r < strip_rows(); ++r) out.row[r][c] = scratch.row(c * strip_rows() + r);
         }
         decode_strip(format, level, strip, rows, scratch.stride());
         return out;
@@ -58,18 +55,18 @@ struct LevelReader {
 
 // Provides the rows of planes unchanged.
 struct ImageReader {
-    const Plane<float>* planes[kComponents];  // all but x and y may be null
+    const std::array<const Plane<float>*, 4>& planes;  // those that are not there are null
+    Sources sources;
 
-    [[nodiscard]] Extent extent() const { return planes[0]->extent(); }
+    [[nodiscard]] Extent extent() const { return planes[static_cast<std::size_t>(sources.x)]->extent(); }
     [[nodiscard]] int strip_rows() const { return kBlockEdge; }
 
     StripRows read(int strip, Plane<float>&) const {
         const int first = strip * strip_rows();
         StripRows out;
-        for (int k = 0; k < kComponents; ++k) {
-            for (int r = 0; planes[k] != nullptr && r < strip_rows() && first + r < extent().height; ++r) {
-                out.component[k][r] = planes[k]->row(first + r);
-            }
+        for (std::size_t c = 0; c < 4; ++c) {
+            for (int r = 0; planes[c] != nullptr && r < strip_rows() && first + r < extent().height; ++r)
+                out.row[r][c] = planes[c]->row(first + r);
         }
         return out;
     }
@@ -88,13 +85,14 @@ Result<bool> weigh_range(const Reader& reader, const Execution& execution) {
     const int strip_rows = reader.strip_rows();
     const int strips = blocks_across(extent.height, strip_rows);
     const auto weighed = parallel_for(silent, strips, strips_at_once(extent, strip_rows), [&](int begin, int end) {
-        Plane<float> scratch = make_scratch(extent, kComponents * strip_rows);
+        Plane<float> scratch = make_scratch(extent, 4 * strip_rows);
         for (int strip = begin; strip < end && !negative; ++strip) {
             const StripRows held = reader.read(strip, scratch);
             const int first = strip * strip_rows;
             for (int r = 0; r < std::min(strip_rows, extent.height - first); ++r) {
                 RangeEvidence& row = rows[static_cast<std::size_t>(first) + static_cast<std::size_t>(r)];
-                row = weigh_row(held.component[0][r], held.component[1][r], held.component[2][r], extent.width);
+                const VectorRow vectors = vectors_of(held.row[r], reader.sources);
+                row = weigh_row(vectors.x, vectors.y, vectors.z, extent.width);
                 if (row.negative) negative = true;
             }
         }
@@ -113,30 +111,24 @@ Result<bool> is_unsigned(const Reader& reader, SampleKind sample, ValueRange ran
 }
 
 template <class Reader>
-Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlanes others, NormalMap& map,
+Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, ExtraSet extras, NormalMap& map,
                          const Execution& execution, ProgressSpan span) {
     const Extent extent = reader.extent();
     map = NormalMap(extent);
-    for (const OtherPlace& place : kOtherPlaces) {
-        if (others.*place.has) map.*place.plane = Plane<float>(extent);
-    }
+    add_planes(map, extras);
     const int strip_rows = reader.strip_rows();
     return parallel_for(
         execution, blocks_across(extent.height, strip_rows), strips_at_once(extent, strip_rows),
         [&](int begin, int end) {
-            Plane<float> scratch = make_scratch(extent, kComponents * strip_rows);
+            Plane<float> scratch = make_scratch(extent, 4 * strip_rows);
             for (int strip = begin; strip < end; ++strip) {
                 const StripRows rows = reader.read(strip, scratch);
                 for (int r = 0; r < strip_rows && strip * strip_rows + r < extent.height; ++r) {
                     const int j = strip * strip_rows + r;
-                    unpack_row(rows.component[0][r], rows.component[1][r], rows.component[2][r], rule, extent.width,
-                               map.x.row(j), map.y.row(j), map.z.row(j));
-                    if (others.length) {
-                        values_of_lengths(rows.component[0][r], rows.component[1][r], rows.component[2][r],
-                                          rule.is_unsigned, extent.width, map.length.row(j));
-                    }
-                    if (others.blue) std::copy_n(rows.component[3][r], extent.width, map.blue.row(j));
-                    if (others.alpha) std::copy_n(rows.component[4][r], extent.width, map.alpha.row(j));
+                    const VectorRow vectors = vectors_of(rows.row[r], reader.sources);
+                    unpack_row(vectors.x, vectors.y, vectors.z, rule, extent.width, map.x.row(j), map.y.row(j),
+                               map.z.row(j));
+                    unpack_extras(extras, vectors, rule.is_unsigned, rows.row[r], map, j);
                 }
             }
         },
@@ -144,8 +136,8 @@ Result<void> unpack_rows(const Reader& reader, const UnpackRule& rule, OtherPlan
 }
 
 // The channels beside the normals that the options want.
-OtherPlanes others_wanted(const Sources& sources, int channels, const UnpackOptions& options) {
-    return others_beside(sources, channels) & options.others;
+ExtraSet extras_wanted(const Sources& sources, int channels, const UnpackOptions& options) {
+    return extras_beside(sources, channels) & options.others;
 }
 
 bool is_one_everywhere(const Plane<float>& plane) {
@@ -190,7 +182,7 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
     if (!biased) return biased.error();
     rule.is_unsigned = *biased;
 
-    const OtherPlanes others = others_wanted(*sources, info.channels, options);
+    const ExtraSet extras = extras_wanted(*sources, info.channels, options);
     double texels = 0.0;
     for (const Level& level : texture.levels) texels += static_cast<double>(level.extent.texels());
     MipChain chain;
@@ -200,13 +192,13 @@ Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& opti
         const Level& level = texture.levels[k];
         const double next = done + static_cast<double>(level.extent.texels()) / texels;
         NormalMap& map = chain.levels[k];
-        const auto unpacked = unpack_rows(LevelReader{texture.format, level, *sources, others}, rule, others, map,
+        const auto unpacked = unpack_rows(LevelReader{texture.format, level, *sources, extras}, rule, extras, map,
                                           execution, {done, std::min(1.0, next)});
         if (!unpacked) return unpacked.error();
         done = next;
     }
     const auto has_ones = [](const NormalMap& map) { return is_one_everywhere(map.alpha); };
-    if (others.alpha && std::all_of(chain.levels.begin(), chain.levels.end(), has_ones)) {
+    if (extras.alpha && std::all_of(chain.levels.begin(), chain.levels.end(), has_ones)) {
         for (NormalMap& map : chain.levels) map.alpha = {};
     }
     return chain;
@@ -221,19 +213,18 @@ Result<NormalMap> unpack_image(const Image& image, const UnpackOptions& options,
     const Result<Sources> sources =
         sources_of(options.swizzle.value_or(image.planes.size() == 2 ? kSwizzleXy : kSwizzleXyz), available);
     if (!sources) return sources.error();
-    const auto plane = [&](int c) { return c < 0 ? nullptr : planes[static_cast<std::size_t>(c)]; };
     const int channels = available >= 8 ? 4 : available >= 4 ? 3 : 2;
-    const OtherPlanes others = others_wanted(*sources, channels, options);
-    const ImageReader reader{{plane(sources->x), plane(sources->y), plane(sources->z),
-                              others.blue ? planes[2] : nullptr, others.alpha ? planes[3] : nullptr}};
+    ExtraSet extras = extras_wanted(*sources, channels, options);
+    extras.blue = extras.blue && planes[2] != nullptr;
+    const ImageReader reader{planes, *sources};
 
     UnpackRule rule = rule_of(options, image.sample, image.bits, options.y_axis.value_or(YAxis::up));
     const Result<bool> biased = is_unsigned(reader, image.sample, range_of(image.normal_encoding, options), execution);
     if (!biased) return biased.error();
     rule.is_unsigned = *biased;
     NormalMap map;
-    if (const auto unpacked = unpack_rows(reader, rule, others, map, execution, {}); !unpacked) return unpacked.error();
-    if (others.alpha && is_one_everywhere(map.alpha)) map.alpha = {};
+    if (const auto unpacked = unpack_rows(reader, rule, extras, map, execution, {}); !unpacked) return unpacked.error();
+    if (extras.alpha && is_one_everywhere(map.alpha)) map.alpha = {};
     return map;
 }
 

@@ -123,6 +123,19 @@ TEST(ChannelNames, HeightsAreTakenByWholeNamesAndFromLayers) {
     EXPECT_EQ(height({"Ci.b", "Ci.g", "Ci.r"}, options), 0.375f);
 }
 
+TEST(ChannelNames, APictureWithoutBlueHasNoDataInIt) {
+    Image image;
+    image.names = {"R", "G", "A"};
+    for (const float value : {0.5f, 0.5f, 0.25f}) image.planes.emplace_back(Extent{3, 2}, value);
+    UnpackOptions options;
+    options.swizzle = kSwizzleXy;
+    options.others = {true, true, false};
+    const Result<NormalMap> map = unpack(image, options);
+    ASSERT_TRUE(map);
+    EXPECT_TRUE(map->blue.empty());
+    EXPECT_EQ(map->alpha.at(2, 1), 0.25f);
+}
+
 // The values that OpenImageIO's oiiotool prints for the texel (20, 30) of these files.
 TEST(ChannelNames, FilesOfOtherProgramsHoldTheirNormals) {
     const std::string folder = TEX_SOURCE_DIR "/../shared/data/wild/";

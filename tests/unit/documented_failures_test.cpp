@@ -175,7 +175,7 @@ TEST(DocumentedFailures, OfFilesThatAreChecked) {
 TEST(DocumentedFailures, OfPipelines) {
     NormalMap map = flat_map({8, 8});
     const auto put = [&](Encoding encoding, auto change) {
-        OtherInputs inputs;
+        ExtraInputs inputs;
         change(inputs);
         return failure_of(put_others(map, inputs, encoding));
     };
@@ -194,29 +194,29 @@ TEST(DocumentedFailures, OfPipelines) {
     ASSERT_TRUE(write_texture(file, *pack(*build_mip_chain(flat_map({8, 8})), bc5)));
     PackFileOptions deep, rough_alpha;
     deep.level = 9;
-    rough_alpha.others.alpha = OtherData{0.5f};
+    rough_alpha.others.alpha = ExtraData{0.5f};
     rough_alpha.pack = [](const SourceInfo&) { return PackOptions{Encoding::rgba8}; };
     const Result<Source> y = read_normals(file, measured);
     expect_all({
-        {"put_others: cannot hold", ErrorCode::bad_option, put(Encoding::bc5, [](auto& o) { o.alpha = OtherData{}; })},
-        {"put_others: value", ErrorCode::bad_option, put(Encoding::rgba8, [](auto& o) { o.alpha = OtherData{1.5f}; })},
-        {"put_others: value", ErrorCode::bad_option, put(Encoding::rgba8, [](auto& o) { o.alpha = OtherData{NAN}; })},
+        {"put_others: cannot hold", ErrorCode::bad_option, put(Encoding::bc5, [](auto& o) { o.alpha = ExtraData{}; })},
+        {"put_others: value", ErrorCode::bad_option, put(Encoding::rgba8, [](auto& o) { o.alpha = ExtraData{1.5f}; })},
+        {"put_others: value", ErrorCode::bad_option, put(Encoding::rgba8, [](auto& o) { o.alpha = ExtraData{NAN}; })},
         {"put_others: another extent", ErrorCode::bad_option,
          put(Encoding::rgba8,
              [&](auto& o) {
-                 o.alpha = OtherData{1.0f, gives({8, 4})};
+                 o.alpha = ExtraData{1.0f, gives({8, 4})};
              })},
         {"put_others: heights", ErrorCode::bad_option,
          put(Encoding::rgba8,
              [](auto& o) {
-                 o.alpha = OtherData{1.0f, {}, true};
+                 o.alpha = ExtraData{1.0f, {}, true};
              })},
         {"put_others: blue with length", ErrorCode::bad_option,
-         put(Encoding::rgba8, [](auto& o) { o.blue = o.length = OtherData{}; })},
+         put(Encoding::rgba8, [](auto& o) { o.blue = o.length = ExtraData{}; })},
         {"put_others: those of map", ErrorCode::io,
          put(Encoding::rgba8,
              [&](auto& o) {
-                 o.alpha = OtherData{1.0f, fails};
+                 o.alpha = ExtraData{1.0f, fails};
              })},
         {"read_normals: y is not clear", ErrorCode::bad_data, failure_of(y)},
         {"pack_file: lacks the level", ErrorCode::bad_option, failure_of(pack_file(file, out, Container::dds, deep))},

@@ -65,7 +65,7 @@ protected:
     // The channels that are left out, as letters.
     static std::string lost(const Result<PackFileReport>& report) {
         std::string names;
-        for (const OtherChannel& other : report.value().source.others) names += other.name;
+        for (const ExtraChannel& other : report.value().source.others) names += other.name;
         return names;
     }
 
@@ -202,7 +202,7 @@ TEST_F(LengthDataTest, IsGivenAndWrittenApart) {
     input_ = StreamTest::write(
         "unit.png", encode_file(pack(chain_from(wavy_map(kSize)), {Encoding::rgb16}).value(), Container::png).value());
     options_.source.unpack.others.length = false;
-    options_.others.length = OtherData{1.0f, []() -> Result<Plane<float>> { return occlusion(); }};
+    options_.others.length = ExtraData{1.0f, []() -> Result<Plane<float>> { return occlusion(); }};
     options_.keep_codes = true;
     encoding_ = Encoding::rgb16;
     ASSERT_TRUE(run(Container::png));
@@ -210,7 +210,7 @@ TEST_F(LengthDataTest, IsGivenAndWrittenApart) {
     input_ = path("both.png");
     options_.others = {};
     options_.source.unpack.others.length = true;
-    options_.length_file = OtherFile{path("ao.png"), Container::png};
+    options_.apart.length = ExtraFile{path("ao.png"), Container::png};
     ASSERT_TRUE(run(Container::png));
     const Image apart = decode(read_texture(path("ao.png")).value(), 0).value(), normals = stored();
     const Plane<float> expected = occlusion();
@@ -230,11 +230,11 @@ TEST_F(LengthDataTest, AVectorWithoutZHasNoLength) {
         EXPECT_NE(done.error().message().find(words), std::string::npos) << done.error().message();
         EXPECT_FALSE(std::filesystem::exists(path("out")));
     };
-    options_.others = {OtherData{0.5f}, {}, OtherData{0.5f}};
+    options_.others = {ExtraData{0.5f}, {}, ExtraData{0.5f}};
     refuses("blue and length exclude each other");
-    options_.others = {OtherData{0.5f}, {}, {}};
+    options_.others = {ExtraData{0.5f}, {}, {}};
     refuses("blue and length exclude each other");
-    options_.others = {{}, {}, OtherData{0.5f}};
+    options_.others = {{}, {}, ExtraData{0.5f}};
     encoding_ = Encoding::bc5;
     refuses("bc5 has no length for data beside the normals; these formats have: rgb8");
     encoding_ = Encoding::rgb8;
@@ -263,14 +263,14 @@ TEST_F(LengthDataTest, IsNoFault) {
 TEST_F(LengthDataTest, DataArePutBesideNormalsInMemory) {
     NormalMap map = wavy_map(kSize);
     const auto give = []() -> Result<Plane<float>> { return occlusion(); };
-    ASSERT_TRUE(put_others(map, {{}, OtherData{0.25f}, OtherData{1.0f, give}}, Encoding::rgba16));
+    ASSERT_TRUE(put_others(map, {{}, ExtraData{0.25f}, ExtraData{1.0f, give}}, Encoding::rgba16));
     EXPECT_EQ(map.alpha.at(3, 4), 0.25f);
     EXPECT_EQ(map.length.at(3, 4), occlusion().at(3, 4));
-    EXPECT_FALSE(put_others(map, {OtherData{0.25f}, {}, {}}, Encoding::rgba16)) << "there is data in the lengths";
-    EXPECT_FALSE(put_others(map, {{}, OtherData{0.25f}, {}}, Encoding::rgb16)) << "no room";
+    EXPECT_FALSE(put_others(map, {ExtraData{0.25f}, {}, {}}, Encoding::rgba16)) << "there is data in the lengths";
+    EXPECT_FALSE(put_others(map, {{}, ExtraData{0.25f}, {}}, Encoding::rgb16)) << "no room";
     NormalMap small = wavy_map({3, 3});
-    EXPECT_FALSE(put_others(small, {{}, OtherData{1.0f, give}, {}}, Encoding::rgba8)) << "another extent";
-    EXPECT_FALSE(put_others(small, {{}, OtherData{1.0f, {}, true}, {}}, Encoding::rgba8)) << "no heights here";
+    EXPECT_FALSE(put_others(small, {{}, ExtraData{1.0f, give}, {}}, Encoding::rgba8)) << "another extent";
+    EXPECT_FALSE(put_others(small, {{}, ExtraData{1.0f, {}, true}, {}}, Encoding::rgba8)) << "no heights here";
 }
 
 }  // namespace

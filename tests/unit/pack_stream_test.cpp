@@ -37,7 +37,7 @@ protected:
         return write("in." + name, encode_file(texture, kind, options_.write).value());
     }
     [[nodiscard]] std::string write_map(Extent extent, Container kind, Encoding encoding, int levels = 1,
-                                        OtherPlanes beside = {}) const {
+                                        ExtraSet beside = {}) const {
         MipOptions mip;
         mip.levels = levels;
         NormalMap map = wavy_map(extent);
@@ -97,8 +97,8 @@ protected:
             options_.mip->wrap_x = any_of(kWrapNames, random);
             options_.mip->wrap_y = any_of(kWrapNames, random);
             if (options_.mip->domain == MipDomain::vector) {
-                options_.mip->alpha = any_of(kOtherKindNames, random);
-                options_.mip->blue = any_of(kOtherKindNames, random);
+                options_.mip->alpha = any_of(kExtraKindNames, random);
+                options_.mip->blue = any_of(kExtraKindNames, random);
             }
         }
         y_ = one_in(2);

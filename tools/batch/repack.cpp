@@ -47,11 +47,11 @@ Encoding PackCommand::encoding(const SourceInfo&, const Task& task) const { retu
 PackFileOptions PackCommand::all_options(Job& job) const {
     PackFileOptions with = options(job);
     with.source = normals.options(job);
-    if (others.is_added()) others.apply(with.source.unpack);
+    if (extras.is_added()) extras.apply(with.source.unpack);
     // Lengths that are data do not stay in the codes if they are told to go.
     if (normals.length_in && !with.source.unpack.others.length) with.keep_codes = false;
-    with.others = others.inputs(job);
-    if (with.mip) others.apply(*with.mip);
+    with.others = extras.inputs(job);
+    if (with.mip) extras.apply(*with.mip);
     const OutputOptions own = output.of(job.task.engine);
     with.source.doubt_y = own.y.has_value();  // otherwise y stays as it is, and the output does not state it
     with.pack = [this, own, &job](const SourceInfo& info) {

@@ -12,8 +12,8 @@
 #include <tex/pipeline.h>
 
 #include "batch/batch.h"
+#include "options/extras.h"
 #include "options/normals.h"
-#include "options/others.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -24,7 +24,7 @@ public:
     using Converter::Converter;
 
     NormalsReader normals;
-    OtherOptions others;
+    ExtraOptions extras;
 
     void note(Job& job, const StepsReport& done) override;
     [[nodiscard]] Result<void> accept(const Job& job) const override;

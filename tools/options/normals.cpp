@@ -158,8 +158,8 @@ Row& add_y_in(Command& command, const char* name, std::string help, std::functio
     return y;
 }
 
-void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_others) {
-    keeps_others_ = keeps_others;
+void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_extras) {
+    keeps_extras_ = keeps_extras;
     command.group("Input");
     add_y_in(command, "--y-in", "which way green points in the input",
              [this](YIn y) {
@@ -185,12 +185,12 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_othe
     command.flag(unpack.snap_flat, "--snap-flat", "read 127 and 128 of 8-bit files as 0");
     command.flag(fills_background, "--fill-background", "fill the background around charts with the nearest normals");
     if (with_keep_length) command.flag(unpack.keep_length, "--keep-length", "do not normalise what is read");
-    if (!keeps_others) return;
+    if (!keeps_extras) return;
     add_length_in(command, length_in);
     command.check([this] {
         if (length_in && unpack.keep_length) throw UsageError("--length-in and --keep-length exclude each other");
     });
-    command.flag(drops_others, "--drop", "leave out channels that hold no normals, and do not warn of it");
+    command.flag(drops_extras, "--drop", "leave out channels that hold no normals, and do not warn of it");
 }
 
 SourceOptions NormalsReader::options(const Job& job, const Reading& reading) const {
@@ -207,8 +207,8 @@ SourceOptions NormalsReader::options(const Job& job, const Reading& reading) con
     options.doubt_y = reading.doubt_y;
     options.inspect = !reading.object;
     options.unpack.others.length = length_in == LengthIn::occlusion;
-    if (reading.others) options.unpack.others = *reading.others;
-    options.drop_others = drops_others || !keeps_others_;
+    if (reading.extras) options.unpack.others = *reading.extras;
+    options.drop_others = drops_extras || !keeps_extras_;
     options.fill_background = fills_background;
     options.file_y_first = reading.is_detail && !reading.y;
     return options;
@@ -239,7 +239,7 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
             path);
     }
     if (!warn_of_kind(job, path, info)) return;
-    if (path == job.task.map_path() && !info.others.empty()) warn_of_others(job, path, info);
+    if (path == job.task.map_path() && !info.others.empty()) warn_of_extras(job, path, info);
     if (info.guessed) guesses_.add(job, path, guess_text(layout_name(info.swizzle)));
 }
 
@@ -297,14 +297,14 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
 }
 
 // Says which channels an output lacks.
-void NormalsReader::warn_of_others(Job& job, const std::string& path, const SourceInfo& info) const {
+void NormalsReader::warn_of_extras(Job& job, const std::string& path, const SourceInfo& info) const {
     std::vector<std::string> names;
-    for (const OtherChannel& other : info.others) {
+    for (const ExtraChannel& other : info.others) {
         const std::string name = other.name == 'L' ? "the lengths of vectors" : std::string(1, other.name);
         names.push_back(fmt::format("{} ({:.2g} to {:.2g})", name, other.least, other.greatest));
     }
     const bool is_alpha = std::any_of(info.others.begin(), info.others.end(),
-                                      [](const OtherChannel& other) { return other.name == 'A'; });
+                                      [](const ExtraChannel& other) { return other.name == 'A'; });
     const std::string_view keeps = is_alpha ? alpha_encoding(info, job.task.container) : std::string_view();
     const bool is_one = names.size() == 1;
     job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
@@ -321,11 +321,8 @@ Result<Source> NormalsReader::read(Job& job, const std::string& path, const Exec
     }
     auto source = read_normals(path, with, reading.base_only, execution);
     if (source && reading.holds) {
-        const OtherPlanes held = reading.holds(source->info);
-        std::erase_if(source->info.others, [held](const OtherChannel& other) {
-            return (other.name == 'A' && held.alpha) || (other.name == 'B' && held.blue) ||
-                   (other.name == 'L' && held.length);
-        });
+        const ExtraSet held = reading.holds(source->info);
+        std::erase_if(source->info.others, [&held](const ExtraChannel& extra) { return extra.is_in(held); });
     }
     if (source) note(job, path, source->info);
     return source;

@@ -63,12 +63,12 @@ struct Reading {
     bool is_detail = false;     // the file's own y overrides --y-in, which is the base's
     std::optional<YIn> y = {};  // overrides all of that
     std::optional<bool> keep_length = {};
-    bool doubt_y = false;                    // warn if y is assumed and the texels clearly show the other direction
-    bool object = false;                     // the vectors are in object space
-    const ModelInput* model = nullptr;       // the file is this map of a model
-    std::optional<OtherPlanes> others = {};  // what goes along beside the normals
+    bool doubt_y = false;                 // warn if y is assumed and the texels clearly show the other direction
+    bool object = false;                  // the vectors are in object space
+    const ModelInput* model = nullptr;    // the file is this map of a model
+    std::optional<ExtraSet> extras = {};  // what goes along beside the normals
     // What of it is not lost; empty: nothing.
-    std::function<OtherPlanes(const SourceInfo& info)> holds = {};
+    std::function<ExtraSet(const SourceInfo& info)> holds = {};
 };
 
 class NormalsReader {
@@ -82,11 +82,11 @@ public:
     std::optional<YAxis> y_otherwise;  // as YIn::otherwise
     bool fills_background = false;
     bool warns_of_background = true;  // where the output may mix it into the charts
-    bool drops_others = false;        // channels that hold no normals are left out, and no warning says so
+    bool drops_extras = false;        // channels that hold no normals are left out, and no warning says so
 
-    // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses. `keeps_others`: the command
+    // `with_keep_length`: --keep-length is an option. Otherwise the command itself chooses. `keeps_extras`: the command
     // writes a map, and what the input holds beside its normals goes along.
-    void add(Command& command, bool with_keep_length = true, bool keeps_others = true);
+    void add(Command& command, bool with_keep_length = true, bool keeps_extras = true);
 
     // What was given, as options of the library.
     [[nodiscard]] SourceOptions options(const Job& job, const Reading& reading = {}) const;
@@ -113,9 +113,9 @@ public:
 private:
     // Warns of what seems to be something else than normals. Returns false if it is no normal map at all.
     bool warn_of_kind(Job& job, const std::string& path, const SourceInfo& info) const;
-    void warn_of_others(Job& job, const std::string& path, const SourceInfo& info) const;
+    void warn_of_extras(Job& job, const std::string& path, const SourceInfo& info) const;
 
-    bool keeps_others_ = false;
+    bool keeps_extras_ = false;
     RepeatedWarnings guesses_;
 };
 

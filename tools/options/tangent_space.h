@@ -66,8 +66,8 @@ public:
     Space to = Space::tangent;
 
     void add(Command& command);
-    // Without those of an output: --mesh, which may be left out, --decoder, --tangents, the choice of parts, and
-    // --from. --material, --decoder, --tangents and --from are for models, too.
+    // Adds the options of an input alone: --mesh, which may be left out, --decoder, --tangents, the choice of parts,
+    // and --from. --material, --decoder, --tangents and --from are for models, too.
     void add_input(Command& command, bool with_from = false);
 
     // Throws UsageError if the options do not fit the inputs: those of add_input(), and those of add().

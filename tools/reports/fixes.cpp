@@ -130,7 +130,7 @@ std::optional<Encoding> with_alpha(Encoding encoding) {
 }
 
 // Whether the command can carry along what the other channels hold: alpha, beside x, y and z.
-bool carries_others(const Rule& rule, const CheckReport& report) {
+bool carries_extras(const Rule& rule, const CheckReport& report) {
     const bool is_alpha =
         report.swizzle[0] == Component::x && report.swizzle[1] == Component::y && report.swizzle[2] == Component::z;
     const bool drops = rule.fix.find("--drop") != std::string_view::npos;
@@ -212,7 +212,7 @@ void join_commands(FixCommand& command, const FixCommand& other) {
 // Whether one command can do this and other things: mip-normals does all that pack-normals does.
 bool can_be_joined(const Finding& finding, const CheckReport& report) {
     if (!is_command(*finding.rule) || is_red_mirrored(finding.rule->id, report)) return false;
-    if (report.more_data && !carries_others(*finding.rule, report)) return false;
+    if (report.more_data && !carries_extras(*finding.rule, report)) return false;
     const std::string program = command_of(*finding.rule, report).program;
     return (program == "pack-normals" || program == "mip-normals") && finding.rule->id != "N108";
 }
@@ -332,7 +332,7 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (finding.rule->fix.starts_with(kRepair)) return {"Export the map again from its source."};
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
-    if (report.more_data && !(carries_others(*finding.rule, report) && target_of(id, report, require))) {
+    if (report.more_data && !(carries_extras(*finding.rule, report) && target_of(id, report, require))) {
         return {
             "No command is printed, because it would lose what the other channels hold. Save that first with "
             "unpack-normals --alpha-out or --blue-out; pack-normals --format rgba8 keeps alpha."};

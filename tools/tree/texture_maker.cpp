@@ -114,7 +114,7 @@ void redirect(Step& step, const std::map<std::string, std::string>& further) {
         if (const auto place = further.find(file->output); place != further.end()) file->output = place->second;
     };
     turn(pack->roughness);
-    for (auto* const file : {&pack->blue_file, &pack->alpha_file, &pack->length_file}) turn(*file);
+    for (const Extra extra : kExtras) turn(pack->apart[extra]);
 }
 
 // The files that a step has written, in the order of Recipe::files_of(). `path` is its output.

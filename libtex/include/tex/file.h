@@ -285,11 +285,18 @@ struct SourceOptions {
 };
 
 // A channel of a file that holds other data beside the normals: heights, gloss, a mask.
-struct OtherChannel {
+struct ExtraChannel {
     char name = 'A';                      // R, G, B, A, or L: the lengths of vectors
     float least = 0.0f, greatest = 0.0f;  // as decode() gives its values
 
-    friend bool operator==(const OtherChannel&, const OtherChannel&) = default;
+    // Whether it is one of these: its name is the first letter of theirs.
+    [[nodiscard]] constexpr bool is_in(const ExtraSet& extras) const {
+        for (const Named<Extra>& row : kExtraNames) {
+            if (name == row.name[0] - 'a' + 'A') return extras[row.value];
+        }
+        return false;
+    }
+    friend bool operator==(const ExtraChannel&, const ExtraChannel&) = default;
 };
 
 // What a file holds.
@@ -309,7 +316,7 @@ struct SourceInfo {
     // Channels of the base level, whose values differ by more than 1.5 of 255 and repeat none of x, y and z. After
     // pack_file() and blend_file(): those of them that are not in every output. Encodings with four channels take alpha
     // along (can_hold()).
-    std::vector<OtherChannel> others;
+    std::vector<ExtraChannel> others;
     bool srgb = false;  // this and remarks: as in Texture
     std::vector<std::string> remarks;
 };

@@ -253,18 +253,9 @@ struct EncodingInfo {
 
 [[nodiscard]] TEX_API EncodingInfo encoding_info(Encoding encoding);
 
-// Which data beside the normals there are: NormalMap::blue, alpha and length.
-struct OtherPlanes {
-    bool blue = false;
-    bool alpha = false;
-    bool length = false;
-
-    friend bool operator==(const OtherPlanes&, const OtherPlanes&) = default;
-};
-
 // What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant, and data in the
 // length of vectors whose z is stored; so blue and length exclude each other.
-[[nodiscard]] TEX_API OtherPlanes can_hold(Encoding encoding);
+[[nodiscard]] TEX_API ExtraSet can_hold(Encoding encoding);
 
 // Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks.
 [[nodiscard]] TEX_API bool can_optimise(Encoding encoding);

@@ -68,19 +68,19 @@ struct Fade {
 //   roughness                  as build_roughness_chain() does: with the variance that the averaged normals lose. Needs
 //                              the domain vector
 //   gloss                      1 - roughness, the same way
-enum class OtherKind { height, occlusion, mask, roughness, gloss };
+enum class ExtraKind { height, occlusion, mask, roughness, gloss };
 
-inline constexpr Named<OtherKind> kOtherKindNames[] = {
-    {OtherKind::height, "height", "smaller levels hold the mean"},
-    {OtherKind::occlusion, "occlusion", "smaller levels hold the mean"},
-    {OtherKind::mask, "mask", "smaller levels hold the mean"},
-    {OtherKind::roughness, "roughness", "smaller levels get the variance that the normals lose"},
-    {OtherKind::gloss, "gloss", "1 - roughness"},
+inline constexpr Named<ExtraKind> kExtraKindNames[] = {
+    {ExtraKind::height, "height", "smaller levels hold the mean"},
+    {ExtraKind::occlusion, "occlusion", "smaller levels hold the mean"},
+    {ExtraKind::mask, "mask", "smaller levels hold the mean"},
+    {ExtraKind::roughness, "roughness", "smaller levels get the variance that the normals lose"},
+    {ExtraKind::gloss, "gloss", "1 - roughness"},
 };
 
 // Whether smaller levels depend on the normals.
-[[nodiscard]] constexpr bool follows_normals(OtherKind kind) {
-    return kind == OtherKind::roughness || kind == OtherKind::gloss;
+[[nodiscard]] constexpr bool follows_normals(ExtraKind kind) {
+    return kind == ExtraKind::roughness || kind == ExtraKind::gloss;
 }
 
 struct MipOptions {
@@ -95,8 +95,8 @@ struct MipOptions {
     int max_side = 0;
     // z may be negative, as in object space; else a z below 0 becomes 0. Needs the domain vector and no fade.
     bool any_z = false;
-    OtherKind blue = OtherKind::mask;  // of the data beside the normals
-    OtherKind alpha = OtherKind::mask;
+    ExtraKind blue = ExtraKind::mask;  // of the data beside the normals
+    ExtraKind alpha = ExtraKind::mask;
     RoughnessModel roughness = RoughnessModel::toksvig;  // of roughness and gloss among them
 
     // Whether smaller levels of other data depend on the normals.

@@ -193,7 +193,7 @@ struct UnpackOptions {
     // Which data beside the normals go along: NormalMap::blue is B as it is stored, if it holds no part of the normals,
     // and so is NormalMap::alpha, unless it is 1 everywhere; NormalMap::length is what the lengths of vectors hold, if
     // z is stored. Lengths are data only if this says so.
-    OtherPlanes others = {false, true, false};
+    ExtraSet others = {false, true, false};
 
     friend bool operator==(const UnpackOptions&, const UnpackOptions&) = default;
 };

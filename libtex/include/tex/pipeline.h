@@ -60,7 +60,7 @@ struct TerrainTile {
 
 // One channel of a picture, from 0 to 1, as read_image() and height_field() read it, with FileValues::unit and without
 // a no-data value. Files read its rows with those of the normals, and do not hold it.
-struct OtherPicture {
+struct ExtraPicture {
     std::string file;
     ReadOptions read = {};
     HeightChannel channel = HeightChannel::automatic;
@@ -68,24 +68,22 @@ struct OtherPicture {
 
 // Data that go into B, A or the lengths of the vectors, beside the normals of the base level (NormalMap::blue, alpha
 // and length). MipOptions says what smaller levels get.
-struct OtherData {
+struct ExtraData {
     float value = 1.0f;  // the same everywhere, from 0 to 1,
     std::function<Result<Plane<float>>()> map =
         {};                                    // or, if set, what this returns: a map of the extent of the base level,
     bool heights = false;                      // or, if set, the heights that are baked; only for bake_file(),
-    std::optional<OtherPicture> picture = {};  // or, if set, this picture, which has the extent of the base level
+    std::optional<ExtraPicture> picture = {};  // or, if set, this picture, which has the extent of the base level
 };
-struct OtherInputs {
-    std::optional<OtherData> blue = {}, alpha = {}, length = {};
-};
+using ExtraInputs = Extras<std::optional<ExtraData>>;
 
 // Puts data beside the normals of a map in memory, which is to be packed in this encoding, as the functions below do.
 // Errors: bad_option (the encoding cannot hold them; a value is not from 0 to 1; a map has another extent; heights,
-// which are not here; blue together with length), those of OtherData::map, out_of_memory.
-[[nodiscard]] TEX_API Result<void> put_others(NormalMap& map, const OtherInputs& inputs, Encoding encoding);
+// which are not here; blue together with length), those of ExtraData::map, out_of_memory.
+[[nodiscard]] TEX_API Result<void> put_others(NormalMap& map, const ExtraInputs& inputs, Encoding encoding);
 
 // A file for the data that a source has beside its normals: one channel, the levels that the container holds.
-struct OtherFile {
+struct ExtraFile {
     std::string output;
     Container container = Container::png;
     Format format = Format::r8_unorm;
@@ -113,7 +111,7 @@ struct BakeFileOptions {
     WriteOptions write;
     LevelNames level_names;      // one file for each level, and `output` is not written; empty: one file
     std::vector<MoreFile> more;  // appear after `output`, in this order
-    OtherInputs others;          // every output must have room for them
+    ExtraInputs others;          // every output must have room for them
     bool slopes = false;         // whether BakeFileReport::slopes is computed
 
     // Called when all rows were read, and before any file appears: an error means that none does. Must not throw.
@@ -208,9 +206,9 @@ struct PackFileOptions {
     std::optional<RoughnessFile> roughness;  // only if `mip` is set
     // Replace what the source has there; every output must have room for them. They are those of the base level, so
     // smaller levels are not taken from the source: bad_option if there are any, and `mip` is not set.
-    OtherInputs others;
-    // Appear after the files of normals. What goes into length_file is no longer in the lengths of the normals.
-    std::optional<OtherFile> blue_file, alpha_file, length_file;
+    ExtraInputs others;
+    // Files that appear after those of normals. What goes into apart.length is no longer in the lengths of the normals.
+    Extras<std::optional<ExtraFile>> apart;
 
     std::function<Result<void>(const SourceInfo&)> accept;  // as in BakeFileOptions
 };
@@ -289,7 +287,7 @@ struct BlendFileOptions {
     WriteOptions write;
     LevelNames level_names;      // as in BakeFileOptions
     std::vector<MoreFile> more;  // as in BakeFileOptions
-    OtherInputs others;          // as in PackFileOptions; without them, those of the base go along
+    ExtraInputs others;          // as in PackFileOptions; without them, those of the base go along
 
     std::shared_ptr<SharedMaps> shared;  // where the maps of the layers are kept; null: nowhere
 

@@ -418,6 +418,33 @@ inline constexpr Named<YAxis> kYAxisNames[] = {
     {YAxis::down, "down", "-Y: DirectX, Unreal"},
 };
 
+// The data that a texture can hold beside the normals, in extra channels.
+enum class Extra { alpha, blue, length };
+
+inline constexpr Named<Extra> kExtraNames[] = {
+    {Extra::alpha, "alpha", "heights, occlusion, roughness or a mask in A"},
+    {Extra::blue, "blue", "the same in B, instead of z"},
+    {Extra::length, "length", "occlusion, in the lengths of vectors"},
+};
+inline constexpr Extra kExtras[] = {Extra::alpha, Extra::blue, Extra::length};
+
+// One thing for each of them.
+template <class T>
+struct Extras {
+    T blue = {}, alpha = {}, length = {};
+
+    [[nodiscard]] constexpr T& operator[](Extra extra) {
+        return extra == Extra::alpha ? alpha : extra == Extra::blue ? blue : length;
+    }
+    [[nodiscard]] constexpr const T& operator[](Extra extra) const {
+        return extra == Extra::alpha ? alpha : extra == Extra::blue ? blue : length;
+    }
+    friend bool operator==(const Extras&, const Extras&) = default;
+};
+
+// Which of them there are.
+using ExtraSet = Extras<bool>;
+
 // Three planes of one extent. The constructor takes them from one piece of memory, equally far apart, so that all three
 // can be seen as one array of rows, columns and components. Memory is released with the last plane.
 //
@@ -428,16 +455,13 @@ inline constexpr Named<YAxis> kYAxisNames[] = {
 //
 //     length = 0.5 + 0.5 sqrt(c), c = clamp(2 length - 1, 0, 1)^2     (Terrain3D for Godot, pull request 868, 2025)
 //
-// unpack() finds all of them again; build_mip_chain() averages them (OtherKind; `length` as occlusion). scale() and the
+// unpack() finds all of them again; build_mip_chain() averages them (ExtraKind; `length` as occlusion). scale() and the
 // conversions of mesh.h leave them as they are. blend() keeps those of the base, sampled as its normals are. Other
 // verbs ignore them.
-struct NormalMap {
+struct NormalMap : Extras<Plane<float>> {
     Plane<float> x;
     Plane<float> y;
     Plane<float> z;
-    Plane<float> blue;
-    Plane<float> alpha;
-    Plane<float> length;
 
     NormalMap() = default;
     explicit NormalMap(Extent extent) {

@@ -33,7 +33,7 @@ struct AstcTexels {
 // dynamic range.
 void decode_astc(Extent block, const std::byte* bytes, const AstcTexels& texels);
 
-// The lines on which the texels of a block lie, between two endpoints for each partition.
+// The endpoints of a block: the texels of each partition lie on the line between two of them.
 struct AstcLines {
     AstcMode mode;
     int partitions = 1;                            // at most 3
@@ -41,8 +41,8 @@ struct AstcLines {
     int ends[3][2][2] = {};                        // by partition and channel (R, A), from 0 to 255
 };
 
-// The lines of a block as encode_astc() writes it; the second of two planes is alpha's. A block of one colour has none:
-// the result is then empty.
+// Reads them from a block that encode_astc() has written; if there are two planes of weights, the second one belongs to
+// alpha. Empty for a block of one colour, which has no endpoints.
 [[nodiscard]] std::optional<AstcLines> read_astc_lines(Extent block, const std::byte* bytes);
 
 }  // namespace tex::inline v1

@@ -14,7 +14,7 @@
 
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/unpack_rows.h"
 
 namespace tex::inline v1 {

@@ -12,6 +12,7 @@
 #include "checks/seam_evidence.h"
 #include "checks/tangent_rules.h"
 #include "mesh/vectors.h"
+#include "mesh/weld.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -20,24 +21,6 @@ constexpr std::size_t kMostEdges = 1 << 14;
 constexpr int kMostPlaces = 8;               // on an edge
 constexpr float kSameNormal = 0.9998f;       // the cosine of a degree
 constexpr double kQuantum = 0.3 / kDegrees;  // a gap that rounding to 8 bits explains
-
-// For each vertex, the number of its position; equal positions have the same number.
-std::vector<std::uint32_t> positions_of(const MeshPart& part) {
-    std::vector<std::uint32_t> order(part.positions.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::uint32_t>(k);
-    const auto key = [&](std::uint32_t v) {
-        const Float3& p = part.positions[v];
-        return std::tuple(p.x, p.y, p.z);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::vector<std::uint32_t> number(order.size());
-    std::uint32_t last = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        if (k > 0 && key(order[k - 1]) != key(order[k])) ++last;
-        number[order[k]] = last;
-    }
-    return number;
-}
 
 // An edge of a triangle, keyed by the numbers of its ends.
 struct Edge {
@@ -53,7 +36,7 @@ bool same_normals(const MeshPart& part, std::uint32_t a, std::uint32_t b) {
 }
 
 std::vector<Edge> edges_of(const MeshPart& part) {
-    const std::vector<std::uint32_t> number = positions_of(part);
+    const std::vector<std::uint32_t> number = numbered_positions(part);
     std::vector<Edge> edges;
     edges.reserve(part.indices.size());
     for (std::size_t t = 0; t < part.triangles(); ++t) {

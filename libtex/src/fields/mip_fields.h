@@ -27,8 +27,8 @@ void level_fields(O& o, F& f) {
 template <Of<MipOptions> O, class F>
 void each_field(O& o, F& f) {
     level_fields(o, f);
-    f("blue", o.blue, kOtherKindNames);
-    f("alpha", o.alpha, kOtherKindNames);
+    f("blue", o.blue, kExtraKindNames);
+    f("alpha", o.alpha, kExtraKindNames);
     f("roughness", o.roughness, kRoughnessModelNames);
 }
 

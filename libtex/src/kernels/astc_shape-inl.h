@@ -231,8 +231,8 @@ HWY_INLINE FloatVec AstcInside(FloatVec part, int p, FloatVec value, FloatVec ot
     return hn::IfThenElse(hn::Eq(part, AstcNumber(static_cast<float>(p))), value, other);
 }
 
-// What evenly spaced levels, the outer ones at the ends of the range, leave of texels around its middle: of a
-// partition, or of all texels.
+// The sum of the squared errors if texels are rounded to evenly spaced levels, of which the outer ones are the ends of
+// the range: over part p, or over all texels if `part` is null.
 static HWY_NOINLINE FloatVec CoarseLeave(const float* field, FloatVec field_middle, const float* part, int p,
                                          FloatVec range, float steps, std::size_t end) {
     const FloatTag d;
@@ -249,7 +249,8 @@ static HWY_NOINLINE FloatVec CoarseLeave(const float* field, FloatVec field_midd
     return hn::Mul(sum, hn::Mul(step, step));
 }
 
-// What coarse weights leave, as a share of what they would leave of evenly spread texels.
+// The squared error of coarse weights, `leave`, divided by that of texels that are spread evenly over the range; at
+// most 1.
 HWY_INLINE FloatVec CoarseShare(FloatVec leave, FloatVec squared_range, int coarse, int texels) {
     const auto steps = static_cast<float>(coarse + 1);
     const FloatVec even = hn::Mul(squared_range, AstcNumber(static_cast<float>(texels) / (12.0f * steps * steps)));

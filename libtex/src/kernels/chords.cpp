@@ -19,8 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using ChordFloats = hn::CappedTag<float, 16>;
 
-// What makes decoded components unit: the inverse of their length where that is above 1, where z is 0, and 1 elsewhere.
-// Few blocks have such texels.
+// The factor for decoded x and y, whose squared length is `square`: its inverse length where that is above 1, so that
+// the vector has unit length and z is 0; elsewhere 1. Few blocks have texels above 1.
 hn::Vec<ChordFloats> rim_factor(hn::Vec<ChordFloats> square) {
     const ChordFloats d;
     const auto one = hn::Set(d, 1.0f);

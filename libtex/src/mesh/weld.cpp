@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -202,6 +203,22 @@ Result<std::vector<std::uint32_t>> weld_to_first(const MeshPart& part, int uv_se
         corner = first[corner];
     }
     return welded;
+}
+
+std::vector<std::uint32_t> numbered_positions(const MeshPart& part) {
+    std::vector<std::uint32_t> order(part.positions.size()), number(order.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto key = [&](std::uint32_t v) {
+        const Float3& p = part.positions[v];
+        return std::tuple(p.x, p.y, p.z);
+    };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::uint32_t last = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k > 0 && key(order[k - 1]) != key(order[k])) ++last;
+        number[order[k]] = last;
+    }
+    return number;
 }
 
 }  // namespace tex::inline v1

@@ -22,4 +22,7 @@ Result<std::vector<std::uint32_t>> weld_corners(const MeshPart& part, int uv_set
 // The classes of weld_corners(), each represented by its first corner.
 Result<std::vector<std::uint32_t>> weld_to_first(const MeshPart& part, int uv_set, const Execution& execution);
 
+// For each vertex, the number of its position; equal positions have the same number. May throw std::bad_alloc.
+std::vector<std::uint32_t> numbered_positions(const MeshPart& part);
+
 }  // namespace tex::inline v1

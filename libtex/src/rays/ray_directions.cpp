@@ -9,28 +9,12 @@
 #include <tuple>
 
 #include "mesh/disjoint_sets.h"
+#include "mesh/weld.h"
 #include "rows/math.h"
 #include "threads/no_throw.h"
 
 namespace tex::inline v1 {
 namespace {
-
-// For each vertex, the number of its position; equal positions have the same number.
-std::vector<std::uint32_t> numbered_positions(const MeshPart& part) {
-    std::vector<std::uint32_t> order(part.positions.size()), number(order.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto key = [&](std::uint32_t v) {
-        const Float3& p = part.positions[v];
-        return std::tuple(p.x, p.y, p.z);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::uint32_t last = 0;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        if (k > 0 && key(order[k - 1]) != key(order[k])) ++last;
-        number[order[k]] = last;
-    }
-    return number;
-}
 
 std::array<Vector3, 3> corners_of(const MeshPart& part, std::size_t triangle) {
     return Triangles::Triangle{part, triangle}.corners();

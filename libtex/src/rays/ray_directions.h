@@ -27,14 +27,11 @@ public:
     // A direction of unit length, at the point of the triangle that has these weights. `work` is what hard edges cost.
     [[nodiscard]] Vector3 at(std::size_t triangle, const std::array<double, 3>& weights, Vector3 point,
                              RayWork& work) const;
-    // The direction with this k of RayMode::straight.
+    // The direction of RayMode::straight between the averaged normal (k = 0) and that of the face (k = 1).
     [[nodiscard]] Vector3 skewed(std::size_t triangle, const std::array<double, 3>& weights, double k) const;
     // Directions at many points of a triangle. They mean nothing if the work is not fair afterwards.
     void along(std::size_t triangle, VectorArrays<const double> weights, VectorArrays<const double> points,
                std::size_t count, VectorArrays<double> directions, RayWork& work) const;
-
-    // The hard edges as triangles without area; empty unless the mode is `straight`.
-    [[nodiscard]] const MeshPart& hard_edges() const { return *hard_; }
 
 private:
     void set_straight(const std::vector<std::uint32_t>& position, double angle);
@@ -46,7 +43,8 @@ private:
     const MeshPart* part_ = nullptr;
     double width_ = 0.0;
     std::vector<Vector3> normals_;  // of corners: those of RayMode::smooth or RayMode::vertex
-    std::vector<Vector3> own_;      // with RayMode::straight: F; otherwise empty
+    std::vector<Vector3> own_;      // with RayMode::straight: averaged up to hard edges alone; else empty
+    // The hard edges as triangles without area; empty unless the mode is `straight`.
     std::shared_ptr<MeshPart> hard_ = std::make_shared<MeshPart>();
     std::optional<BoxTree> hard_tree_;  // none: there are no hard edges
 };

@@ -104,7 +104,7 @@ StoredLevels StoredLevels::clone() const {
     return copy;
 }
 
-Result<StoredLevels> decode_levels(const Texture& texture, bool has_others, const Execution& execution) {
+Result<StoredLevels> decode_levels(const Texture& texture, bool has_extras, const Execution& execution) {
     StoredLevels all;
     for (int k = 0; k < static_cast<int>(texture.levels.size()); ++k) {
         auto image = decode(texture, k, execution);
@@ -121,7 +121,7 @@ Result<StoredLevels> decode_levels(const Texture& texture, bool has_others, cons
     all.head.srgb = texture.srgb;
     all.is_signed =
         stores_signed(all.levels.front(), texture.swizzle, range_of(texture.normal_encoding, UnpackOptions{}));
-    all.keeps_blocks = !has_others && block_encoding(texture.format, texture.swizzle).has_value();
+    all.keeps_blocks = !has_extras && block_encoding(texture.format, texture.swizzle).has_value();
     return all;
 }
 

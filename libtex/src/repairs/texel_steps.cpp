@@ -14,6 +14,7 @@
 
 #include "checks/centre.h"
 #include "checks/texel_counts.h"
+#include "rows/unpack_rows.h"
 #include "stream/filled_map.h"
 #include "threads/parallel.h"
 
@@ -136,11 +137,9 @@ NormalMap base_of(const StoredLevels& levels) {
         }
     }
     const auto& planes = levels.levels.front().planes;
-    const auto is_beside = [&](std::size_t c) {
-        return c < planes.size() && static_cast<int>(c) != x && static_cast<int>(c) != y && static_cast<int>(c) != z;
-    };
-    if (is_beside(2)) map.blue = planes[2].clone();
-    if (is_beside(3)) map.alpha = planes[3].clone();
+    const ExtraSet beside = extras_beside({x, y, z}, static_cast<int>(planes.size()));
+    if (beside.blue) map.blue = planes[2].clone();
+    if (beside.alpha) map.alpha = planes[3].clone();
     return map;
 }
 

@@ -52,9 +52,10 @@ public:
         scale_row(map_.chain == nullptr ? between_rows(out) : between_texels(out), 1.0f, ScaleMode::slope, width_, out);
     }
 
-    // Samples other data at the row that was made last.
-    void other(Plane<float> NormalMap::*plane, float* out) {
-        const float* const made = component(plane, out);
+    // Samples an extra channel at the row that was made last.
+    void extra(Extra extra, float* out) {
+        const float* const made = samples(
+            [extra](const NormalMap& map) -> auto& { return map[extra]; }, out);
         if (made != out) std::copy_n(made, width_, out);
     }
 
@@ -76,14 +77,20 @@ private:
         return {out.x, out.y, out.z};
     }
     VectorRow between_texels(NormalRow out) {
-        return {component(&NormalMap::x, out.x), component(&NormalMap::y, out.y), component(&NormalMap::z, out.z)};
+        return {samples(
+                    [](const NormalMap& map) -> auto& { return map.x; }, out.x),
+                samples(
+                    [](const NormalMap& map) -> auto& { return map.y; }, out.y),
+                samples(
+                    [](const NormalMap& map) -> auto& { return map.z; }, out.z)};
     }
-    const float* component(Plane<float> NormalMap::*plane, float* row) {
-        const Plane<float>& texels = map_.chain->levels[map_.level].*plane;
+    template <class PlaneOf>
+    const float* samples(const PlaneOf& plane_of, float* row) {
+        const Plane<float>& texels = plane_of(map_.chain->levels[map_.level]);
         if (!far_ && near_.row_of(texels) != nullptr) return near_.row_of(texels);
         near_.sample(texels, row);
         if (!far_) return row;
-        far_->sample(map_.chain->levels[map_.level + 1].*plane, scratch_.row(0));
+        far_->sample(plane_of(map_.chain->levels[map_.level + 1]), scratch_.row(0));
         mix_row(row, scratch_.row(0), map_.mix, width_);
         return row;
     }
@@ -154,6 +161,6 @@ void BlendRows::make(int j, NormalRow out) {
     for (LayerRows& layer : layers_) layer.blend(j, out);
 }
 
-void BlendRows::make_other(Plane<float> NormalMap::*plane, float* out) { base_.front().other(plane, out); }
+void BlendRows::make_extra(Extra extra, float* out) { base_.front().extra(extra, out); }
 
 }  // namespace tex::inline v1

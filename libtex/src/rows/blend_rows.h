@@ -66,8 +66,8 @@ public:
 
     // Makes row j. `out` has room for whole vectors.
     void make(int j, NormalRow out);
-    // Samples data beside the normals of the base at that row. Precondition: the base has a chain.
-    void make_other(Plane<float> NormalMap::*plane, float* out);
+    // Samples an extra channel of the base at that row. Precondition: the base has a chain.
+    void make_extra(Extra extra, float* out);
 
 private:
     class MapSampler;

@@ -13,7 +13,7 @@
 #include "kernels/encode.h"
 #include "kernels/pack.h"
 #include "rows/codecs.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -137,20 +137,20 @@ void pack_channels(VectorRow normals, const Swizzle& swizzle, bool negate_y, con
     }
 }
 
-Swizzle swizzle_with(Encoding encoding, OtherPlanes beside) {
+Swizzle swizzle_with(Encoding encoding, ExtraSet beside) {
     Swizzle swizzle = encoding_info(encoding).swizzle;
     if (beside.blue && can_hold(encoding).blue) swizzle[2] = Component::other;
     return swizzle;
 }
 
-void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
+void pack_rows(const NormalMap& map, ExtraSet extras, int height, const PackOptions& options, int begin, int end,
                std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
     const FormatInfo info = format_info(format);
-    Swizzle channels = swizzle_with(options.encoding, others);
-    if (others.alpha && can_hold(options.encoding).alpha) channels[3] = Component::other;
-    const bool lengthens = others.length && can_hold(options.encoding).length;
-    const Rows rows(map, height, channels, lengthens, options.y_axis);
+    const ExtraSet held = extras & can_hold(options.encoding);
+    Swizzle channels = swizzle_with(options.encoding, extras);
+    if (held.alpha) channels[3] = Component::other;
+    const Rows rows(map, height, channels, held.length, options.y_axis);
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;

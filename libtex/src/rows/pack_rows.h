@@ -23,13 +23,13 @@ namespace tex::inline v1 {
 //
 // `plain`, unless it is null, gets the blocks as they are without optimisation, at the same places as `out`.
 //
-// `others`: the data of the map beside its normals that are stored, in the channels that can_hold() names.
-void pack_rows(const NormalMap& map, OtherPlanes others, int height, const PackOptions& options, int begin, int end,
+// `extras`: those of the map that are stored, in the channels that can_hold() names.
+void pack_rows(const NormalMap& map, ExtraSet extras, int height, const PackOptions& options, int begin, int end,
                std::byte* out, const RdoBands& bands, RdoTally* tally = nullptr, std::byte* plain = nullptr);
 
 // The swizzle of a texture of this encoding that also holds these data. Alpha stays a constant there: whether it is one
 // is known only after the last row.
-[[nodiscard]] Swizzle swizzle_with(Encoding encoding, OtherPlanes beside);
+[[nodiscard]] Swizzle swizzle_with(Encoding encoding, ExtraSet beside);
 
 // Packs `count` texels of a format without blocks. `channels` are those of the format (kernels/pack.h); whole vectors
 // of them are read. `out` has room for kPackSlack more texels. Returns the bytes of the texels.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rows/extra_rows.h"
+
 namespace tex::inline v1 {
 namespace {
 
@@ -22,11 +24,23 @@ double length_error(double x, double y, double z, bool has_z) {
 
 }  // namespace
 
-OtherPlanes others_beside(const Sources& sources, int channels) {
-    const auto is_free = [&](int channel) {
+std::array<bool, 4> channels_read(const Sources& sources, ExtraSet extras) {
+    std::array<bool, 4> read = {};
+    for (const int c : {sources.x, sources.y, sources.z}) {
+        if (c >= 0) read[static_cast<std::size_t>(c)] = true;
+    }
+    for (const Extra extra : kExtras) {
+        if (extras[extra] && channel_of(extra) >= 0) read[static_cast<std::size_t>(channel_of(extra))] = true;
+    }
+    return read;
+}
+
+ExtraSet extras_beside(const Sources& sources, int channels) {
+    return extras_with([&](Extra extra) {
+        const int channel = channel_of(extra);
+        if (channel < 0) return sources.z >= 0;
         return channels > channel && sources.x != channel && sources.y != channel && sources.z != channel;
-    };
-    return {is_free(2), is_free(3), sources.z >= 0};
+    });
 }
 
 Result<Sources> sources_of(const Swizzle& swizzle, unsigned available) {

@@ -3,12 +3,14 @@
 
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
 #include <tex/pack.h>
 #include <tex/types.h>
 
+#include "kernels/normal_row.h"
 #include "kernels/unpack.h"
 
 namespace tex::inline v1 {
@@ -20,9 +22,17 @@ struct Sources {
     int z = -1;
 };
 
+// Which channels hold them and these extras.
+[[nodiscard]] std::array<bool, 4> channels_read(const Sources& sources, ExtraSet extras);
+
+// The rows of x, y and z among those of channels; z may be null.
+[[nodiscard]] inline VectorRow vectors_of(const float* const (&channels)[4], const Sources& sources) {
+    return {channels[sources.x], channels[sources.y], sources.z < 0 ? nullptr : channels[sources.z]};
+}
+
 // What a format, which has so many channels, may hold beside the normals: channels that hold no part of them, and the
 // lengths of vectors.
-[[nodiscard]] OtherPlanes others_beside(const Sources& sources, int channels);
+[[nodiscard]] ExtraSet extras_beside(const Sources& sources, int channels);
 
 // The message for a file with one channel.
 inline constexpr const char* kOneChannel = "has one channel, which holds no normals (bake-normals reads heights)";

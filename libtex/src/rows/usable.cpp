@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -26,8 +26,7 @@ Result<void> check_usable(Extent extent, std::string_view what) {
 Result<void> check_usable(const NormalMap& map) {
     const auto fits = [&map](const Plane<float>& plane) { return plane.extent() == map.x.extent(); };
     bool all_fit = fits(map.y) && fits(map.z);
-    for (const OtherPlace& place : kOtherPlaces)
-        all_fit = all_fit && ((map.*place.plane).empty() || fits(map.*place.plane));
+    for (const Extra extra : kExtras) all_fit = all_fit && (map[extra].empty() || fits(map[extra]));
     if (!all_fit) return bad_option("the planes of the map have different extents");
     return check_usable(map.x.extent(), "the map");
 }

@@ -11,7 +11,7 @@
 #include <tex/types.h>
 
 #include "rows/mip_rows.h"
-#include "stream/given_others.h"
+#include "stream/given_extras.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
 #include "stream/open_heights.h"
@@ -48,7 +48,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
     add_targets(options.more, {}, files);
-    const Result<GivenOthers> given = GivenOthers::read(options.others, extent, files);
+    const Result<GivenExtras> given = GivenExtras::read(options.others, extent, files);
     if (!given) return given.error();
     Targets targets;
     if (const Result<void> opened = targets.open(files, given->planes(), report.extent, report.levels); !opened)

@@ -45,12 +45,11 @@ Result<void> BlendStage::make(Strip& strip) {
     const std::shared_ptr<BlendRows> rows = rows_.take([this] { return std::make_unique<BlendRows>(maps_); });
     for (int k = 0; k < strip.height; ++k) {
         rows->make(strip.first + k, strip.normals(k));
-        int plane = kFirstOtherPlane;
-        for (const OtherPlace& place : kOtherPlaces) {
-            if (others().*place.has && base_ != nullptr)
-                std::copy_n(base_->row(plane, strip.first + k), extent().width, strip.row(plane, k));
-            if (others().*place.has && base_ == nullptr) rows->make_other(place.plane, strip.row(plane, k));
-            ++plane;
+        for (const Extra extra : kExtras) {
+            if (!extras()[extra]) continue;
+            float* const to = strip.map[extra].row(k);
+            if (base_ == nullptr) rows->make_extra(extra, to);
+            if (base_ != nullptr) std::copy_n(base_->row(plane_of(extra), strip.first + k), extent().width, to);
         }
     }
     return {};

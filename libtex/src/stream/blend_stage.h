@@ -34,7 +34,7 @@ class BlendStage final : public Stage {
 public:
     // `maps` read the rows of those in step, and must outlive this object. `kept`: other data of the base that go
     // along; `base` has their rows, or is null if they are sampled as the normals are.
-    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, OtherPlanes kept, const Stage* base)
+    BlendStage(const PlacedMaps& maps, std::vector<MapInStep> in_step, ExtraSet kept, const Stage* base)
         : Stage(maps.extent, kept), maps_(maps), in_step_(std::move(in_step)), base_(base) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override;

@@ -8,7 +8,7 @@
 
 #include "rows/mip_rows.h"
 #include "stream/blending.h"
-#include "stream/given_others.h"
+#include "stream/given_extras.h"
 #include "stream/level_stage.h"
 #include "stream/targets.h"
 
@@ -27,26 +27,26 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     report.pack = packing_for(options.pack, container, blending.source());
     std::vector<FileTarget> files = {{output, options.level_names, container, report.pack, options.write}};
     add_targets(options.more, blending.source(), files);
-    const Result<GivenOthers> given = GivenOthers::read(options.others, blending.extent(), files);
+    const Result<GivenExtras> given = GivenExtras::read(options.others, blending.extent(), files);
     if (!given) return given.error();
-    const OtherPlanes own = given->planes();
-    OtherPlanes kept = blending.others_taken() & held_by_any(files) & !own;
+    const ExtraSet own = given->planes();
+    ExtraSet kept = blending.extras_taken() & held_by_any(files) & !own;
     if (kept.alpha && may_change_ones(options.mip, files)) {
         const Result<bool> is_one = blending.alpha_is_one();
         if (!is_one) return is_one.error();
         kept.alpha = !*is_one;
     }
-    const OtherPlanes others = kept | own;
-    if (const Result<void> fit = check_together(others); !fit) return fit.error();
+    const ExtraSet extras = kept | own;
+    if (const Result<void> fit = check_together(extras); !fit) return fit.error();
     Targets targets;
-    if (const Result<void> opened = targets.open(files, others, report.extent, report.levels); !opened)
+    if (const Result<void> opened = targets.open(files, extras, report.extent, report.levels); !opened)
         return opened.error();
     Flow flow;
     flow.set_rows_together(targets.rows_together());
-    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), others};
+    const MadeLevels levels{-left_out, left_out + report.levels, counted_from_base(options.mip, left_out), extras};
     add_levels(flow, given->add_to(flow, blending.add_to(flow, kept)), levels, targets);
     if (const Result<void> done = flow.run(execution, sizes); !done) return done.error();
-    const OtherPlanes not_wanted{false, !options.source.unpack.others.alpha, false};
+    const ExtraSet not_wanted{false, !options.source.unpack.others.alpha, false};
     blending.judge(own | (kept & held_by_all(files)) | not_wanted);
     report.source = blending.source();
     report.details = blending.details();

@@ -93,11 +93,11 @@ Result<PlacedMap> Blending::place(Input& input, const Execution& execution) {
     return PlacedMap{nullptr, row, extent_, input.place, input.wrap_x, input.wrap_y};
 }
 
-OtherPlanes Blending::others_taken() const {
-    return base_.step ? base_.settled.others_taken() : others_of(base_.chain.levels.front());
+ExtraSet Blending::extras_taken() const {
+    return base_.step ? base_.settled.extras_taken() : extras_of(base_.chain.levels.front());
 }
 
-Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
+Stage& Blending::add_to(Flow& flow, ExtraSet kept) {
     std::vector<MapInStep> in_step;
     for (Input& input : inputs_) {
         if (!input.step) continue;
@@ -105,21 +105,21 @@ Stage& Blending::add_to(Flow& flow, OtherPlanes kept) {
             input.inspector.emplace(std::move(*inspector));
         const SourceOptions& source = input.settled.options();
         if (source.inspect)
-            input.others.emplace(input.map().head(), input.map().extent(0), input.settled.sources(), source);
+            input.extra_inspector.emplace(input.map().head(), input.map().extent(0), input.settled.sources(), source);
         input.rows = &input.settled.add_to(flow, 0,
                                            {{},
                                             input.inspector ? &*input.inspector : nullptr,
-                                            input.others && !input.others->empty() ? &*input.others : nullptr,
-                                            &input == &base_ ? kept : OtherPlanes()});
+                                            input.extra_inspector ? &*input.extra_inspector : nullptr,
+                                            &input == &base_ ? kept : ExtraSet()});
         in_step.push_back({input.rows, *input.step});
     }
     return flow.add<BlendStage>(*maps_, std::move(in_step), kept, base_.rows);
 }
 
-void Blending::judge(OtherPlanes accounted_for) {
+void Blending::judge(ExtraSet accounted_for) {
     for (Input& input : inputs_) {
         if (input.inspector) input.inspector->report(input.info);
-        if (input.others) input.info.others = input.others->report(input.info);
+        if (input.extra_inspector) input.info.others = input.extra_inspector->report(input.info);
         if (&input == &base_) input.info.others = left_out(std::move(input.info.others), accounted_for);
     }
 }

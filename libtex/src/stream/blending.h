@@ -27,13 +27,13 @@ public:
     // Opens all maps, settles how they are read, and reads those that are held in memory.
     Result<void> open(const Execution& execution);
     // The data beside the normals of the base that can go along, as its options say.
-    [[nodiscard]] OtherPlanes others_taken() const;
+    [[nodiscard]] ExtraSet extras_taken() const;
     // SettledMap::alpha_is_one() of the base.
     Result<bool> alpha_is_one() { return base_.step ? base_.settled.alpha_is_one() : Result<bool>(false); }
     // Adds stages that make the rows of the result, and these data of the base. To be called once.
-    Stage& add_to(Flow& flow, OtherPlanes kept = {});
+    Stage& add_to(Flow& flow, ExtraSet kept = {});
     // Sets what SourceInfo says about the texels, after the last row. `accounted_for`: what of the base is not lost.
-    void judge(OtherPlanes accounted_for);
+    void judge(ExtraSet accounted_for);
 
     [[nodiscard]] Extent extent() const { return maps_->extent; }
     [[nodiscard]] const std::string& path() const { return base_.map().path(); }
@@ -61,7 +61,7 @@ private:
         std::shared_ptr<const HeldMap> shared;  // or here, if other blends hold it, too
         const Stage* rows = nullptr;
         std::optional<MapInspector> inspector;
-        std::optional<OtherChannels> others;
+        std::optional<ExtraInspector> extra_inspector;
     };
     Result<void> settle(Input& input, const Execution& execution);
     Result<void> hold(Input& input, const Execution& execution);

@@ -19,9 +19,7 @@ std::unique_ptr<Strip> Stage::new_strip(int rows) const {
     const Extent extent{extent_.width, rows};
     if (planes_ == 1) strip->map.x = Plane<float>(extent);
     if (planes_ > 1) strip->map = NormalMap(extent);
-    for (const OtherPlace& place : kOtherPlaces) {
-        if (others_.*place.has) strip->map.*place.plane = Plane<float>(extent);
-    }
+    add_planes(strip->map, extras_);
     return strip;
 }
 

@@ -12,6 +12,7 @@
 #include "rows/blur.h"
 #include "rows/border.h"
 #include "rows/height_bytes.h"
+#include "stream/given_extras.h"
 #include "stream/source_stage.h"
 #include "stream/terrain_rows.h"
 
@@ -191,7 +192,7 @@ class BakeStage final : public Stage {
 public:
     // `beside`: where the heights themselves go.
     BakeStage(const HeightInput& input, const Gradient& gradient, const HeightFieldHead& head,
-              const std::optional<TerrainWindow>& window, OtherPlanes beside)
+              const std::optional<TerrainWindow>& window, ExtraSet beside)
         : Stage(window ? window->tile : input.rows->extent(), beside), input_(input), gradient_(gradient), head_(head),
           left_(window ? window->left : 0), top_(window ? window->top : 0) {}
 
@@ -204,8 +205,8 @@ public:
             const int j = strip.first + top_ + k;
             bake_row(*baker, j, strip.normals(k));
             const float* const heights = input_.row(j) + left_;
-            for (const OtherPlace& place : kOtherPlaces) {
-                if (others().*place.has) std::copy_n(heights, extent().width, (strip.map.*place.plane).row(k));
+            for (const Extra extra : kExtras) {
+                if (extras()[extra]) std::copy_n(heights, extent().width, strip.map[extra].row(k));
             }
         }
         baker->next = strip.first + top_ + strip.height;
@@ -306,9 +307,7 @@ BakedRows add_bake(Flow& flow, Heights& heights, const std::string& input, const
             rows.last = &flow.add<BlurStage>(across, std::max(0, extent.height - gradient.radius), weights);
     }
     const HeightFieldHead head = head_of(heights, options);
-    const auto takes = [](const std::optional<OtherData>& other) { return other && other->heights; };
-    const OtherPlanes beside{takes(options.others.blue), takes(options.others.alpha), takes(options.others.length)};
-    return {&flow.add<BakeStage>(rows, gradient, head, heights.window, beside), head};
+    return {&flow.add<BakeStage>(rows, gradient, head, heights.window, heights_given(options.others)), head};
 }
 
 }  // namespace tex::inline v1

@@ -11,8 +11,8 @@
 #include "kernels/mip.h"
 #include "kernels/roughness.h"
 #include "rows/border.h"
+#include "rows/extra_rows.h"
 #include "rows/mip_rows.h"
-#include "rows/other_rows.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -115,9 +115,8 @@ public:
     using Finish = std::function<void(int j, Strip& strip, int k)>;
 
     // Targets of normals, or of their roughness.
-    TargetStage(const Stage& from, OtherPlanes others, int level_in_file, Finish finish, Targets& targets,
-                WatchRows seen)
-        : Stage(from.extent(), others, from.level()), from_(from), content_(Content::normals),
+    TargetStage(const Stage& from, ExtraSet extras, int level_in_file, Finish finish, Targets& targets, WatchRows seen)
+        : Stage(from.extent(), extras, from.level()), from_(from), content_(Content::normals),
           level_in_file_(level_in_file), finish_(std::move(finish)), targets_(targets), seen_(std::move(seen)) {}
     TargetStage(const Stage& from, Content content, int level_in_file, int planes, Finish finish, Targets& targets,
                 WatchRows seen)
@@ -144,10 +143,10 @@ private:
     const WatchRows seen_;
 };
 
-// Makes what is averaged from other data of the normals.
-class OtherStage final : public Stage {
+// Makes what is averaged from an extra channel of the normals.
+class ExtraStage final : public Stage {
 public:
-    OtherStage(const Stage& normals, int plane, OtherKind kind)
+    ExtraStage(const Stage& normals, int plane, ExtraKind kind)
         : Stage(normals.extent(), 1), normals_(normals), plane_(plane), kind_(kind) {}
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{&normals_, first, end}}; }
@@ -160,34 +159,32 @@ public:
 private:
     const Stage& normals_;
     const int plane_;
-    const OtherKind kind_;
+    const ExtraKind kind_;
 };
 
-// The planes of other data, in the order of their averages.
-struct Other {
+// The planes of extra channels, in the order of their averages.
+struct ExtraPlane {
     int plane;
-    OtherKind kind;
+    ExtraKind kind;
 };
-std::vector<Other> others_of(const MadeLevels& levels) {
-    std::vector<Other> others;
-    int plane = kFirstOtherPlane;
-    for (const OtherPlace& place : kOtherPlaces) {
-        if (levels.others.*place.has) others.push_back({plane, kind_of(place, levels.options)});
-        ++plane;
+std::vector<ExtraPlane> extra_planes(const MadeLevels& levels) {
+    std::vector<ExtraPlane> planes;
+    for (const Extra extra : kExtras) {
+        if (levels.extras[extra]) planes.push_back({plane_of(extra), kind_of(extra, levels.options)});
     }
-    return others;
+    return planes;
 }
 
-// Turns averages of a level into normals and, after them, other data.
+// Turns averages of a level into normals and, after them, extra channels.
 TargetStage::Finish finish_averages(const Stage& averages, int level, const MadeLevels& levels) {
     const int width = averages.extent().width, planes = levels.options.domain == MipDomain::vector ? 3 : 2;
-    return [&averages, level, options = levels.options, others = others_of(levels), width, planes](int j, Strip& strip,
-                                                                                                   int k) {
+    return [&averages, level, options = levels.options, extras = extra_planes(levels), width, planes](
+               int j, Strip& strip, int k) {
         for (int plane = 0; plane < planes; ++plane) std::copy_n(averages.row(plane, j), width, strip.row(plane, k));
         const VectorRow mean{averages.row(0, j), averages.row(1, j), planes == 3 ? averages.row(2, j) : nullptr};
-        for (std::size_t n = 0; n < others.size(); ++n) {
-            values_of_averages(others[n].kind, options.roughness, mean, averages.row(planes + static_cast<int>(n), j),
-                               width, strip.row(others[n].plane, k));
+        for (std::size_t n = 0; n < extras.size(); ++n) {
+            values_of_averages(extras[n].kind, options.roughness, mean, averages.row(planes + static_cast<int>(n), j),
+                               width, strip.row(extras[n].plane, k));
         }
         finish_row(strip.normals(k), width, options, level);
     };
@@ -202,18 +199,18 @@ void add_levels(Flow& flow, const Stage& normals, const MadeLevels& levels, Targ
     const bool averages_vectors = levels.options.domain == MipDomain::vector;
     std::vector<StagePlane> larger =
         averages_vectors ? planes_of(normals, 3) : planes_of(flow.add<SlopeStage>(normals), 2);
-    for (const Other& other : others_of(levels)) {
-        if (follows_normals(other.kind)) {
-            larger.push_back({&flow.add<OtherStage>(normals, other.plane, other.kind), 0});
+    for (const auto& [plane, kind] : extra_planes(levels)) {
+        if (follows_normals(kind)) {
+            larger.push_back({&flow.add<ExtraStage>(normals, plane, kind), 0});
         } else {
-            larger.push_back({&normals, other.plane});
+            larger.push_back({&normals, plane});
         }
     }
     for (int k = 1; k < levels.count; ++k) {
         const Stage& averages = flow.add<MipStage>(larger, k, levels.options);
         larger = planes_of(averages, static_cast<int>(larger.size()));
         if (levels.first + k < 0) continue;
-        flow.add<TargetStage>(averages, levels.others, levels.first + k, finish_averages(averages, k, levels), targets,
+        flow.add<TargetStage>(averages, levels.extras, levels.first + k, finish_averages(averages, k, levels), targets,
                               seen);
     }
 }

@@ -22,7 +22,7 @@ struct MadeLevels {
     int first = 0;       // the level of the file that the base level is; below 0 if it and others are left out
     int count = 1;       // levels that are made, including the base level
     MipOptions options;  // counted from the base level: see counted_from_base()
-    OtherPlanes others;  // that the base level has; smaller levels get them as options.blue and alpha say
+    ExtraSet extras;     // that the base level has; smaller levels get them as options.blue and alpha say
 };
 
 // Adds what makes the levels from `normals` and writes them to `targets`. `seen` may be empty. All parameters but

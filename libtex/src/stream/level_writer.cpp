@@ -162,27 +162,27 @@ private:
 
 bool takes_any_order(Container container) { return file_type_of(container).layout != nullptr; }
 
-LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels) {
+LevelPacking packing_of(const PackOptions& options, ExtraSet extras, Extent extent, int levels) {
     const EncodingInfo encoding = encoding_info(options.encoding);
     const auto tallies = is_optimised(options) ? std::make_shared<RdoTallies>(levels) : nullptr;
     const int band_rows = rdo_band_rows(options, extent.width);
-    const Swizzle swizzle = swizzle_with(options.encoding, others);
+    const Swizzle swizzle = swizzle_with(options.encoding, extras);
     return {{encoding.format, extent, levels, swizzle, true, options.y_axis, options.y_known},
-            [options, others, extent, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
+            [options, extras, extent, band_rows, tallies](const LevelRows& rows, std::byte* out, std::byte* plain) {
                 RdoTally* const tally = tallies ? &tallies->of(rows.level) : nullptr;
                 const RdoBands bands{band_rows, level_extent(extent, rows.level), rows.first};
-                pack_rows(rows.map, others, rows.height, options, 0, rows.height, out, bands, tally, plain);
+                pack_rows(rows.map, extras, rows.height, options, 0, rows.height, out, bands, tally, plain);
             },
             band_rows,
             tallies};
 }
 
-LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Extent extent, int levels) {
+LevelPacking packing_of(const ExtraFile& options, Extra extra, Extent extent, int levels) {
     TextureHead head{options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
     return {head,
-            [format = options.format, plane = place.plane](const LevelRows& rows, std::byte* out, std::byte*) {
-                pack_roughness_rows(rows.map.*plane, rows.height, format, Effort::normal, 0, rows.height, out);
+            [format = options.format, extra](const LevelRows& rows, std::byte* out, std::byte*) {
+                pack_roughness_rows(rows.map[extra], rows.height, format, Effort::normal, 0, rows.height, out);
             },
             1, nullptr};
 }

@@ -17,7 +17,7 @@
 #include "blocks/extent.h"
 #include "files/output_file.h"
 #include "formats/file_layout.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/rdo_rows.h"
 #include "rows/roughness_rows.h"
 
@@ -43,8 +43,8 @@ struct LevelPacking {
     int rows_together = 1;                // strips consist of so many rows of texels, or of whole blocks
     std::shared_ptr<RdoTallies> tallies;  // of blocks that are optimised; otherwise null
 };
-LevelPacking packing_of(const PackOptions& options, OtherPlanes others, Extent extent, int levels);
-LevelPacking packing_of(const OtherFile& options, const OtherPlace& place, Extent extent, int levels);
+LevelPacking packing_of(const PackOptions& options, ExtraSet extras, Extent extent, int levels);
+LevelPacking packing_of(const ExtraFile& options, Extra extra, Extent extent, int levels);
 // `kept` must outlive the packing; null if nothing is kept. Precondition: options.format is set.
 LevelPacking packing_of(const RoughnessFile& options, const KeptChannels* kept, Extent extent, int levels);
 

@@ -10,7 +10,7 @@
 #include "formats/channels.h"
 #include "rows/usable.h"
 #include "stream/blending.h"
-#include "stream/given_others.h"
+#include "stream/given_extras.h"
 #include "stream/height_stage.h"
 #include "stream/open_heights.h"
 #include "stream/settled_map.h"
@@ -33,7 +33,7 @@ public:
             std::copy_n(row.x, width, map_.x.row(j));
             std::copy_n(row.y, width, map_.y.row(j));
             std::copy_n(row.z, width, map_.z.row(j));
-            if (!map_.alpha.empty()) std::copy_n(from_.row(kFirstOtherPlane, j), width, map_.alpha.row(j));
+            if (!map_.alpha.empty()) std::copy_n(from_.row(plane_of(Extra::alpha), j), width, map_.alpha.row(j));
         }
         return {};
     }
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] bool has_y_up() const final { return true; }
     StoredChannels add_to(Flow& flow, int level, const std::vector<bool>&) final {
         std::vector<std::size_t> planes = {0, 1, 2};
-        if (beside_.alpha) planes.push_back(kFirstOtherPlane);
+        if (beside_.alpha) planes.push_back(plane_of(Extra::alpha));
         return {&add_normals(flow, level), std::move(planes)};
     }
     // The layout of floats is known.
@@ -78,13 +78,13 @@ public:
 protected:
     virtual const Stage& add_normals(Flow& flow, int level) = 0;
     // Settles what is beside the normals: alpha, as the options give it, or else if `kept`. `levels`: those of the map.
-    Result<void> settle_others(const OtherInputs& inputs, bool kept, int levels) {
+    Result<void> settle_extras(const ExtraInputs& inputs, bool kept, int levels) {
         if (inputs.blue || inputs.length)
             return bad_option("steps: only the last one can put data into blue or the lengths of vectors");
         if (inputs.alpha && levels > 1)
             return Error{ErrorCode::bad_option, path(),
                          "has smaller levels, and what is given beside the normals none"};
-        Result<GivenOthers> given = GivenOthers::read(inputs, extent(0), {});
+        Result<GivenExtras> given = GivenExtras::read(inputs, extent(0), {});
         if (!given) return given.error().of(path());
         given_ = std::move(*given);
         beside_ = {false, kept || inputs.alpha, false};
@@ -93,8 +93,8 @@ protected:
         return {};
     }
     // What goes along from the map before.
-    [[nodiscard]] OtherPlanes taken() const { return beside_ & !given_.planes(); }
-    [[nodiscard]] const GivenOthers& given() const { return given_; }
+    [[nodiscard]] ExtraSet taken() const { return beside_ & !given_.planes(); }
+    [[nodiscard]] const GivenExtras& given() const { return given_; }
     // How the command would pack the map into a file.
     void describe(const std::function<PackOptions(const SourceInfo&)>& pack, const SourceInfo& source) {
         describe(packing_for(pack, Container::exr, source));
@@ -111,8 +111,8 @@ protected:
 
 private:
     Texture head_;
-    OtherPlanes beside_;
-    GivenOthers given_;
+    ExtraSet beside_;
+    GivenExtras given_;
 };
 
 class BakedMap final : public MadeMap {
@@ -138,7 +138,7 @@ public:
         if (!heights) return heights.error().of(input_);
         heights_.emplace(std::move(*heights));
         describe(options_.pack);
-        return settle_others(options_.others, false, 1);
+        return settle_extras(options_.others, false, 1);
     }
     [[nodiscard]] int levels() const override { return 1; }
     [[nodiscard]] Extent extent(int) const override { return heights_->rows->extent(); }
@@ -180,7 +180,7 @@ public:
         first_ = options_.level.value_or(0);
         levels_ = options_.level ? 1 : held;
         describe(options_.pack, map_.info());
-        if (first_ < held) return settle_others(options_.others, map_.others_taken().alpha, levels_);
+        if (first_ < held) return settle_extras(options_.others, map_.extras_taken().alpha, levels_);
         return Error{ErrorCode::bad_option, path(),
                      "has no level " + std::to_string(first_) + ", only " + std::to_string(held)};
     }
@@ -213,7 +213,7 @@ public:
         blending_.emplace(*before_, options_);
         if (Result<void> opened = blending_->open(execution_); !opened) return opened.error().of(path());
         describe(options_.pack, blending_->source());
-        return settle_others(options_.others, blending_->others_taken().alpha, 1);
+        return settle_extras(options_.others, blending_->extras_taken().alpha, 1);
     }
     [[nodiscard]] int levels() const override { return 1; }
     [[nodiscard]] Extent extent(int) const override { return blending_->extent(); }

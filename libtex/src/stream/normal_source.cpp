@@ -10,9 +10,9 @@
 #include "formats/texture_rows.h"
 #include "rows/decode_rows.h"
 #include "rows/unpack_rows.h"
+#include "stream/extra_inspector.h"
 #include "stream/filled_map.h"
 #include "stream/map_inspector.h"
-#include "stream/other_channels.h"
 #include "stream/source_layout.h"
 #include "threads/parallel.h"
 
@@ -36,13 +36,13 @@ Result<void> turn_up(Source& source, const SourceOptions& options) {
 }
 
 // Sets SourceInfo::others, z_doubtful and not_finite.
-Result<void> look_at_others(const Texture& texture, const SourceOptions& options, Source& source,
+Result<void> look_at_extras(const Texture& texture, const SourceOptions& options, Source& source,
                             const Execution& execution) {
     const int channels = format_info(texture.format).channels;
     const Result<Sources> sources = sources_of(source.info.swizzle, (1u << channels) - 1);
     if (!sources) return sources.error();
-    OtherChannels others(texture, texture.extent(), *sources, options);
-    if (others.empty()) return {};
+    ExtraInspector inspector(texture, texture.extent(), *sources, options);
+    if (inspector.empty()) return {};
     const Level& base = texture.levels.front();
     const NormalMap& map = source.chain.levels.front();
     const int width = base.extent.width, height = base.extent.height, together = strip_rows_of(texture.format);
@@ -54,19 +54,19 @@ Result<void> look_at_others(const Texture& texture, const SourceOptions& options
         for (int k = begin; k < end; ++k) {
             bool is_decoded = false;
             for (int j = k * together; j < std::min(height, (k + 1) * together); ++j) {
-                if (!others.wants_row(j)) continue;
+                if (!inspector.wants_row(j)) continue;
                 if (!is_decoded) decode_strip(texture.format, base, k, rows, stride);
                 is_decoded = true;
                 const float* row[4] = {};
                 for (int c = 0; c < channels; ++c) row[c] = rows.channel[c] + (j - k * together) * stride;
-                others.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, width);
+                inspector.add_row(j, row, {map.x.row(j), map.y.row(j), map.z.row(j)}, width);
             }
         }
     };
     const Result<void> looked = parallel_for(execution.quiet(), (height + together - 1) / together,
                                              strips_at_once(base.extent, together), look);
     if (!looked) return looked.error();
-    source.info.others = others.report(source.info);
+    source.info.others = inspector.report(source.info);
     return {};
 }
 
@@ -126,7 +126,7 @@ Result<Source> unpack_source(Texture texture, SourceOptions options, bool base_o
     }
     inspect(source.chain.levels.front(), options, source.info);
     if (options.inspect) {
-        const Result<void> looked = look_at_others(texture, options, source, execution);
+        const Result<void> looked = look_at_extras(texture, options, source, execution);
         if (!looked) return looked.error();
     }
     return source;

@@ -13,7 +13,7 @@
 
 #include "rows/mip_rows.h"
 #include "rows/usable.h"
-#include "stream/given_others.h"
+#include "stream/given_extras.h"
 #include "stream/level_stage.h"
 #include "stream/map_inspector.h"
 #include "stream/material_roughness.h"
@@ -24,15 +24,8 @@
 namespace tex::inline v1 {
 namespace {
 
-struct ApartFile {
-    const OtherPlace& place;
-    std::optional<OtherFile> PackFileOptions::*file;
-};
-constexpr ApartFile kFiles[] = {
-    {kOtherPlaces[1], &PackFileOptions::blue_file},
-    {kOtherPlaces[0], &PackFileOptions::alpha_file},
-    {kOtherPlaces[2], &PackFileOptions::length_file},
-};
+// The order in which they are written apart.
+constexpr Extra kApartOrder[] = {Extra::blue, Extra::alpha, Extra::length};
 
 // The format, or the same with alpha, whichever the container can hold.
 Format format_with_room(Format format, Container container) {
@@ -54,8 +47,11 @@ private:
     Result<void> prepare();
     void choose_level();
     void settle_lengths();
-    Result<void> settle_others();
-    [[nodiscard]] OtherPlanes accounted_for() const;
+    Result<void> settle_extras();
+    [[nodiscard]] ExtraSet apart() const {
+        return extras_with([this](Extra extra) { return options_.apart[extra].has_value(); });
+    }
+    [[nodiscard]] ExtraSet accounted_for() const;
     Result<void> find_own_roughness();
     Result<void> find_kept_channels();
     Result<void> open_targets();
@@ -79,9 +75,9 @@ private:
     Plane<float> roughness_map_;  // RoughnessFile::map
     std::optional<MaterialRoughness> own_;
     std::optional<KeptChannels> beside_roughness_;
-    GivenOthers given_;
-    OtherPlanes written_;    // what files of normals get beside them
-    OtherPlanes kept_;       // what of the source goes along: into these files, or into its own
+    GivenExtras given_;
+    ExtraSet written_;       // what files of normals get beside them
+    ExtraSet kept_;          // what of the source goes along: into these files, or into its own
     bool in_codes_ = false;  // lengths stay as they are, with what they hold
     int first_ = 0;          // the level that becomes the base level
     int end_ = 1;            // the end of the levels that are read
@@ -122,30 +118,29 @@ Result<void> PackRun::prepare() {
     settle_lengths();
     report_.levels = end_ - first_;
     if (mip_ && holds) report_.levels = levels_to_build(*mip_, base);
-    return settle_others();
+    return settle_extras();
 }
 
 // Decides what goes along beside the normals, and reads what is given.
-Result<void> PackRun::settle_others() {
-    OtherPlanes apart;
-    for (const auto& [place, file] : kFiles) {
-        apart.*place.has = (options_.*file).has_value();
-        if (!(apart.*place.has) || map_.others().*place.has) continue;
-        return Error{ErrorCode::bad_option, map_.map().path(),
-                     std::string("has no ") + place.name + " beside the normals, which could be written apart"};
+Result<void> PackRun::settle_extras() {
+    for (const Extra extra : kApartOrder) {
+        if (!options_.apart[extra] || map_.extras()[extra]) continue;
+        return Error{
+            ErrorCode::bad_option, map_.map().path(),
+            "has no " + std::string(name_of(kExtraNames, extra)) + " beside the normals, which could be written apart"};
     }
-    if (planes_given(options_.others) != OtherPlanes() && end_ - first_ > 1) {
+    if (planes_given(options_.others) != ExtraSet() && end_ - first_ > 1) {
         return Error{ErrorCode::bad_option, map_.map().path(),
                      "has smaller levels, and what is given beside the normals has none: build the levels again, or "
                      "write only the base level"};
     }
-    Result<GivenOthers> read = GivenOthers::read(options_.others, extent(first_), files_);
+    Result<GivenExtras> read = GivenExtras::read(options_.others, extent(first_), files_);
     if (!read) return read.error();
     given_ = std::move(*read);
-    const OtherPlanes own = given_.planes();
-    if ((apart & own) != OtherPlanes()) return bad_option("others: replace what is to be written apart");
-    kept_ = map_.others_taken() & held_by_any(files_) & !own;
-    kept_.length = kept_.length && !apart.length;
+    const ExtraSet own = given_.planes();
+    if ((apart() & own) != ExtraSet()) return bad_option("others: replace what is to be written apart");
+    kept_ = map_.extras_taken() & held_by_any(files_) & !own;
+    kept_.length = kept_.length && !options_.apart.length;
     if (kept_.alpha && mip_ && may_change_ones(*mip_, files_)) {
         const Result<bool> is_one = map_.alpha_is_one();
         if (!is_one) return is_one.error();
@@ -156,7 +151,7 @@ Result<void> PackRun::settle_others() {
     written_.length = written_.length && !in_codes_;
     if (written_.length && map_.rule().keep_length)
         return bad_option("keep_length: vectors have unit length if their lengths get other data");
-    kept_ = kept_ | apart;
+    kept_ = kept_ | apart();
     return check_together(written_);
 }
 
@@ -178,7 +173,7 @@ void PackRun::settle_lengths() {
     }
     // Data in the lengths stay in the codes, or are read, and stored in all files again.
     const bool moves_lengths =
-        options_.others.length || options_.length_file || (map_.others_taken().length && !all_keep);
+        options_.others.length || options_.apart.length || (map_.extras_taken().length && !all_keep);
     if (any_keeps && !moves_lengths) return map_.keep_length();
     for (FileTarget& file : files_) file.unit.reset();
 }
@@ -242,9 +237,9 @@ Result<void> PackRun::find_kept_channels() {
 
 Result<void> PackRun::open_targets() {
     Result<void> opened = targets_.open(files_, written_, report_.extent, report_.levels);
-    for (const auto& [place, file] : kFiles) {
-        if (opened && options_.*file)
-            opened = targets_.open(*(options_.*file), place, options_.write, report_.extent, report_.levels);
+    for (const Extra extra : kApartOrder) {
+        if (opened && options_.apart[extra])
+            opened = targets_.open(*options_.apart[extra], extra, options_.write, report_.extent, report_.levels);
     }
     if (!opened || !options_.roughness) return opened;
     RoughnessFile file = *options_.roughness;
@@ -254,11 +249,9 @@ Result<void> PackRun::open_targets() {
 }
 
 // Where data are not lost, or were told to go.
-OtherPlanes PackRun::accounted_for() const {
-    OtherPlanes apart;
-    for (const auto& [place, file] : kFiles) apart.*place.has = (options_.*file).has_value();
-    const OtherPlanes not_wanted{false, !options_.source.unpack.others.alpha, false};
-    return given_.planes() | apart | (kept_ & held_by_all(files_)) | not_wanted;
+ExtraSet PackRun::accounted_for() const {
+    const ExtraSet not_wanted{false, !options_.source.unpack.others.alpha, false};
+    return given_.planes() | apart() | (kept_ & held_by_all(files_)) | not_wanted;
 }
 
 // Packs a level and the levels that are built from it.
@@ -266,12 +259,11 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     auto inspector = level == first_ ? inspector_for(options_.source, report_.source, extent(level)) : std::nullopt;
     Flow flow;
     flow.set_rows_together(targets_.rows_together());
-    std::optional<OtherChannels> others;
+    std::optional<ExtraInspector> extras;
     if (level == first_ && options_.source.inspect)
-        others.emplace(map_.map().head(), extent(level), map_.sources(), options_.source);
+        extras.emplace(map_.map().head(), extent(level), map_.sources(), options_.source);
     const Stage& unpacked = map_.add_to(
-        flow, level,
-        {options_.scale, inspector ? &*inspector : nullptr, others && !others->empty() ? &*others : nullptr, kept_});
+        flow, level, {options_.scale, inspector ? &*inspector : nullptr, extras ? &*extras : nullptr, kept_});
     const Stage& normals = given_.add_to(flow, unpacked);
     add_levels(flow, normals, made_levels(level, mip_ ? left_out_ + report_.levels : 1), targets_);
     if (options_.roughness) {
@@ -280,7 +272,7 @@ Result<void> PackRun::pack_level(int level, const Execution& execution) {
     }
     if (Result<void> done = flow.run(execution, sizes_); !done) return done;
     if (inspector) inspector->report(report_.source);
-    if (others) report_.source.others = left_out(others->report(report_.source), accounted_for());
+    if (extras) report_.source.others = left_out(extras->report(report_.source), accounted_for());
     return {};
 }
 

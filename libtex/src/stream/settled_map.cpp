@@ -74,8 +74,8 @@ Result<bool> SettledMap::find_range() {
     RangeEvidence range;
     const int width = map_->extent(0).width;
     const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
-        const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
-        range.add(weigh_row(channels[sources_.x], channels[sources_.y], z, width));
+        const VectorRow vectors = vectors_of(channels, sources_);
+        range.add(weigh_row(vectors.x, vectors.y, vectors.z, width));
         return !range.negative;
     });
     if (!seen) return seen.error();
@@ -130,15 +130,14 @@ Result<void> SettledMap::measure_y(const Execution& execution) {
     return settle();
 }
 
-OtherPlanes SettledMap::others() const { return others_beside(sources_, format_info(map_->head().format).channels); }
+ExtraSet SettledMap::extras() const { return extras_beside(sources_, format_info(map_->head().format).channels); }
 
 Result<bool> SettledMap::alpha_is_one() {
-    constexpr int kAlpha = 3;
     if (map_->has_y_up()) return false;  // another step makes it
     const int width = map_->extent(0).width;
     bool is_one = true;
     const Result<void> seen = map_->look([&](const float* const(&channels)[4]) {
-        const float* const alpha = channels[kAlpha];
+        const float* const alpha = channels[channel_of(Extra::alpha)];
         is_one = alpha != nullptr && std::all_of(alpha, alpha + width, [](float value) { return value == 1.0f; });
         return is_one;
     });
@@ -147,13 +146,13 @@ Result<bool> SettledMap::alpha_is_one() {
     return is_one;
 }
 
-OtherPlanes SettledMap::others_taken() const {
-    return options_.drop_others ? OtherPlanes() : others() & options_.unpack.others;
+ExtraSet SettledMap::extras_taken() const {
+    return options_.drop_others ? ExtraSet() : extras() & options_.unpack.others;
 }
 
-Stage& SettledMap::add_to(Flow& flow, int level, const UnpackExtras& extras) const {
-    StoredChannels channels = map_->add_to(flow, level, wanted_channels(sources_, extras));
-    return flow.add<UnpackStage>(std::move(channels), sources_, rule_, extras);
+Stage& SettledMap::add_to(Flow& flow, int level, const UnpackPlan& plan) const {
+    StoredChannels channels = map_->add_to(flow, level, wanted_channels(sources_, plan));
+    return flow.add<UnpackStage>(std::move(channels), sources_, rule_, plan);
 }
 
 }  // namespace tex::inline v1

@@ -25,8 +25,6 @@ public:
     // Opens the map and settles how it is read. Its rows can then be read once. May throw std::bad_alloc. Errors: those
     // of read_normals().
     Result<void> open(const Execution& execution);
-    // Makes the rows ready to be read once more. Errors: as open().
-    Result<void> open_again() { return map_->open(); }
 
     [[nodiscard]] MapSource& map() const { return *map_; }
     [[nodiscard]] const SourceOptions& options() const { return options_; }
@@ -37,15 +35,15 @@ public:
     [[nodiscard]] const UnpackRule& rule() const { return rule_; }
 
     // Where other data may be beside the normals.
-    [[nodiscard]] OtherPlanes others() const;
+    [[nodiscard]] ExtraSet extras() const;
     // Whether alpha is 1 in every texel of the base level, which then holds no data. If rows cannot be looked at, it is
     // not. Rows can be read once more afterwards.
     Result<bool> alpha_is_one();
     // The channels that go along, as the options say.
-    [[nodiscard]] OtherPlanes others_taken() const;
+    [[nodiscard]] ExtraSet extras_taken() const;
 
-    // Adds stages that make the normals of a level. What the extras name must outlive the flow, as the map must.
-    Stage& add_to(Flow& flow, int level, const UnpackExtras& extras = {}) const;
+    // Adds stages that make the normals of a level. What the plan names must outlive the flow, as the map must.
+    Stage& add_to(Flow& flow, int level, const UnpackPlan& plan = {}) const;
 
 private:
     Result<void> settle();

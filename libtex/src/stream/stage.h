@@ -11,13 +11,14 @@
 #include <tex/types.h>
 
 #include "kernels/normal_row.h"
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "threads/pool.h"
 
 namespace tex::inline v1 {
 
-// The planes of a strip of normals after x, y and z are other data, in the order of kOtherPlaces.
-inline constexpr int kFirstOtherPlane = 3;
+// The planes of a strip of normals after x, y and z are extra channels, in the order of Extra.
+inline constexpr int kFirstExtraPlane = 3;
+[[nodiscard]] constexpr int plane_of(Extra extra) { return kFirstExtraPlane + static_cast<int>(extra); }
 
 // Consecutive rows that a stage has made. Which of the members it uses is up to the stage.
 struct Strip {
@@ -30,8 +31,8 @@ struct Strip {
     // Row k of the strip.
     [[nodiscard]] float* row(int plane, int k) {
         if (!image.planes.empty()) return image.planes[static_cast<std::size_t>(plane)].row(k);
-        Plane<float>* const planes[] = {&map.x, &map.y, &map.z, &map.alpha, &map.blue, &map.length};
-        return planes[plane]->row(k);
+        if (plane >= kFirstExtraPlane) return map[static_cast<Extra>(plane - kFirstExtraPlane)].row(k);
+        return (plane == 0 ? map.x : plane == 1 ? map.y : map.z).row(k);
     }
     [[nodiscard]] NormalRow normals(int k) { return {map.x.row(k), map.y.row(k), map.z.row(k)}; }
 };
@@ -51,18 +52,17 @@ class Stage {
 public:
     // `level`: a strip has as many rows as are made, `level` levels below another picture, of one strip of that one.
     Stage(Extent extent, int planes, int level = 0, int begin = 0)
-        : extent_(extent), planes_(planes), others_{planes > kFirstOtherPlane + 1, planes > kFirstOtherPlane,
-                                                    planes > kFirstOtherPlane + 2},
+        : extent_(extent), planes_(planes), extras_(extras_with([=](Extra extra) { return planes > plane_of(extra); })),
           level_(level), begin_(begin) {}
     // A stage that makes normals, and these data beside them.
-    Stage(Extent extent, OtherPlanes others, int level = 0)
-        : extent_(extent), planes_(3), others_(others), level_(level), begin_(0) {}
+    Stage(Extent extent, ExtraSet extras, int level = 0)
+        : extent_(extent), planes_(3), extras_(extras), level_(level), begin_(0) {}
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
     virtual ~Stage() = default;
 
     [[nodiscard]] Extent extent() const { return extent_; }
-    [[nodiscard]] OtherPlanes others() const { return others_; }
+    [[nodiscard]] ExtraSet extras() const { return extras_; }
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] int begin() const { return begin_; }
 
@@ -100,7 +100,7 @@ private:
 
     const Extent extent_;
     const int planes_;
-    const OtherPlanes others_;
+    const ExtraSet extras_;
     const int level_;
     const int begin_;
     std::size_t line_ = 0;  // its place in the flow

@@ -8,14 +8,14 @@
 
 #include <tex/types.h>
 
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 #include "rows/pack_rows.h"
 
 namespace tex::inline v1 {
 namespace {
 
 // A view of the plane, which keeps no memory. It is only read.
-Plane<float> seen(const Plane<float>& plane) {
+Plane<float> view_of(const Plane<float>& plane) {
     if (plane.empty()) return {};
     return {plane.extent(), plane.stride(),
             std::shared_ptr<float>(std::shared_ptr<void>(), const_cast<float*>(plane.row(0)))};
@@ -26,7 +26,7 @@ void pack_units(LevelPacking& packing, const UnitRule& unit) {
     packing.pack = [unit, pack = std::move(packing.pack)](const LevelRows& rows, std::byte* out, std::byte* plain) {
         const NormalMap& from = rows.map;
         NormalMap to(from.extent());
-        for (const OtherPlace& place : kOtherPlaces) to.*place.plane = seen(from.*place.plane);
+        for (const Extra extra : kExtras) to[extra] = view_of(from[extra]);
         for (int j = 0; j < rows.height; ++j) {
             unpack_row(from.x.row(j), from.y.row(j), unit.has_z ? from.z.row(j) : nullptr, unit.rule,
                        from.extent().width, to.x.row(j), to.y.row(j), to.z.row(j));
@@ -54,14 +54,14 @@ void add_targets(const std::vector<MoreFile>& more, const SourceInfo& source, st
     }
 }
 
-OtherPlanes held_by_any(const std::vector<FileTarget>& targets) {
-    OtherPlanes held;
+ExtraSet held_by_any(const std::vector<FileTarget>& targets) {
+    ExtraSet held;
     for (const FileTarget& target : targets) held = held | can_hold(target.pack.encoding);
     return held;
 }
 
-OtherPlanes held_by_all(const std::vector<FileTarget>& targets) {
-    OtherPlanes held{true, true, true};
+ExtraSet held_by_all(const std::vector<FileTarget>& targets) {
+    ExtraSet held{true, true, true};
     for (const FileTarget& target : targets) held = held & can_hold(target.pack.encoding);
     return held;
 }
@@ -101,11 +101,11 @@ Result<void> Targets::add(Content content, const std::string& output, const Leve
     return {};
 }
 
-Result<void> Targets::open(const std::vector<FileTarget>& targets, OtherPlanes others, Extent extent, int levels) {
+Result<void> Targets::open(const std::vector<FileTarget>& targets, ExtraSet extras, Extent extent, int levels) {
     for (const FileTarget& target : targets) {
         int held = holds_levels(target.container, target.level_names) ? levels : 1;
         if (target.levels > 0) held = std::min(held, target.levels);
-        LevelPacking packing = packing_of(target.pack, others, extent, held);
+        LevelPacking packing = packing_of(target.pack, extras, extent, held);
         if (target.unit) pack_units(packing, *target.unit);
         Result<void> added = add(Content::normals, target.output, target.level_names, target.container,
                                  std::move(packing), target.write, Opened::at_once);
@@ -122,12 +122,11 @@ Result<void> Targets::open(const RoughnessFile& file, const KeptChannels* kept, 
                packing_of(file, kept, extent, levels), options, Opened::late);
 }
 
-Result<void> Targets::open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,
-                           int levels) {
+Result<void> Targets::open(const ExtraFile& file, Extra extra, const WriteOptions& write, Extent extent, int levels) {
     WriteOptions options = write;
     if (!can_compress(file.container)) options.zstd = 0;
     const int held = can_hold_levels(file.container) ? levels : 1;
-    return add(Content::normals, file.output, {}, file.container, packing_of(file, place, extent, held), options,
+    return add(Content::normals, file.output, {}, file.container, packing_of(file, extra, extent, held), options,
                Opened::late);
 }
 

@@ -41,8 +41,8 @@ PackOptions packing_for(const std::function<PackOptions(const SourceInfo&)>& pac
                         const SourceInfo& source);
 
 // What any of the files, or all of them, can hold beside the normals.
-[[nodiscard]] OtherPlanes held_by_any(const std::vector<FileTarget>& targets);
-[[nodiscard]] OtherPlanes held_by_all(const std::vector<FileTarget>& targets);
+[[nodiscard]] ExtraSet held_by_any(const std::vector<FileTarget>& targets);
+[[nodiscard]] ExtraSet held_by_all(const std::vector<FileTarget>& targets);
 
 // Whether all levels are written, rather than the base level alone.
 [[nodiscard]] bool holds_levels(Container container, const LevelNames& names);
@@ -56,10 +56,9 @@ class Targets {
 public:
     // Opens files for normals, and for these data beside them where a file can hold them. Rows of levels that a file
     // does not hold are not written to it. Errors: those of LevelWriter::open().
-    Result<void> open(const std::vector<FileTarget>& targets, OtherPlanes others, Extent extent, int levels);
-    // Opens a file for what is beside the rows of normals in one place.
-    Result<void> open(const OtherFile& file, const OtherPlace& place, const WriteOptions& write, Extent extent,
-                      int levels);
+    Result<void> open(const std::vector<FileTarget>& targets, ExtraSet extras, Extent extent, int levels);
+    // Opens a file for an extra channel of the rows of normals.
+    Result<void> open(const ExtraFile& file, Extra extra, const WriteOptions& write, Extent extent, int levels);
     // Opens a file, or files, for roughness. `kept` is as in packing_of().
     Result<void> open(const RoughnessFile& file, const KeptChannels* kept, const WriteOptions& write, Extent extent,
                       int levels);

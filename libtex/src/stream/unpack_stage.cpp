@@ -10,26 +10,18 @@
 
 namespace tex::inline v1 {
 
-namespace {
-
-constexpr int kBlue = 2, kAlpha = 3;
-
-}  // namespace
-
-std::vector<bool> wanted_channels(const Sources& sources, const UnpackExtras& extras) {
-    std::vector<bool> wanted(4, false);
-    for (int c = 0; c < 4; ++c) {
-        wanted[static_cast<std::size_t>(c)] =
-            c == sources.x || c == sources.y || c == sources.z || (c == kBlue && extras.takes.blue) ||
-            (c == kAlpha && extras.takes.alpha) || (extras.others != nullptr && extras.others->wants(c));
-    }
+std::vector<bool> wanted_channels(const Sources& sources, const UnpackPlan& plan) {
+    const std::array<bool, 4> read = channels_read(sources, plan.takes);
+    std::vector<bool> wanted(read.begin(), read.end());
+    for (std::size_t c = 0; c < wanted.size() && plan.extra_inspector != nullptr; ++c)
+        wanted[c] = wanted[c] || plan.extra_inspector->wants(static_cast<int>(c));
     return wanted;
 }
 
 UnpackStage::UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule,
-                         const UnpackExtras& extras)
-    : Stage(channels.rows->extent(), extras.takes), channels_(std::move(channels)), sources_(sources), rule_(rule),
-      extras_(extras), wanted_(wanted_channels(sources, extras)) {}
+                         const UnpackPlan& plan)
+    : Stage(channels.rows->extent(), plan.takes), channels_(std::move(channels)), sources_(sources), rule_(rule),
+      plan_(plan), wanted_(wanted_channels(sources, plan)) {}
 
 Result<void> UnpackStage::make(Strip& strip) {
     const int width = extent().width;
@@ -54,20 +46,15 @@ Result<void> UnpackStage::make(Strip& strip) {
 void UnpackStage::make_row(int j, const float* const (&channels)[4], Strip& strip, int k) {
     const int width = extent().width;
     const NormalRow out = strip.normals(k);
-    const float* const z = sources_.z < 0 ? nullptr : channels[sources_.z];
-    unpack_row(channels[sources_.x], channels[sources_.y], z, rule_, width, out.x, out.y, out.z);
-    if (extras_.takes.length) {
-        values_of_lengths(channels[sources_.x], channels[sources_.y], z, rule_.is_unsigned, width,
-                          strip.map.length.row(k));
-    }
-    if (extras_.takes.alpha) std::copy_n(channels[kAlpha], width, strip.map.alpha.row(k));
-    if (extras_.takes.blue) std::copy_n(channels[kBlue], width, strip.map.blue.row(k));
-    if (extras_.others != nullptr) extras_.others->add_row(j, channels, out, width);
-    if (extras_.inspector != nullptr && extras_.inspector->wants(j)) {
+    const VectorRow vectors = vectors_of(channels, sources_);
+    unpack_row(vectors.x, vectors.y, vectors.z, rule_, width, out.x, out.y, out.z);
+    unpack_extras(plan_.takes, vectors, rule_.is_unsigned, channels, strip.map, k);
+    if (plan_.extra_inspector != nullptr) plan_.extra_inspector->add_row(j, channels, out, width);
+    if (plan_.inspector != nullptr && plan_.inspector->wants(j)) {
         const std::lock_guard lock(inspecting_);
-        extras_.inspector->add_row(j, out);
+        plan_.inspector->add_row(j, out);
     }
-    if (extras_.scale) scale_row(out, extras_.scale->scale, extras_.scale->mode, width, out);
+    if (plan_.scale) scale_row(out, plan_.scale->scale, plan_.scale->mode, width, out);
 }
 
 }  // namespace tex::inline v1

@@ -10,9 +10,9 @@
 #include <tex/blend.h>
 
 #include "rows/unpack_rows.h"
+#include "stream/extra_inspector.h"
 #include "stream/flow.h"
 #include "stream/map_inspector.h"
-#include "stream/other_channels.h"
 
 namespace tex::inline v1 {
 
@@ -24,20 +24,20 @@ struct StoredChannels {
 };
 
 // What happens to normals besides unpacking.
-struct UnpackExtras {
+struct UnpackPlan {
     std::optional<Scaling> scale = {};
-    MapInspector* inspector = nullptr;  // is shown normals before they are scaled, unless it is null
-    OtherChannels* others = nullptr;    // is shown all channels, unless it is null
-    OtherPlanes takes = {};             // what goes along beside the normals
+    MapInspector* inspector = nullptr;          // is shown normals before they are scaled, unless it is null
+    ExtraInspector* extra_inspector = nullptr;  // is shown all channels, unless it is null
+    ExtraSet takes = {};                        // what goes along beside the normals
 };
 
 // Whether each of the four channels is read.
-[[nodiscard]] std::vector<bool> wanted_channels(const Sources& sources, const UnpackExtras& extras);
+[[nodiscard]] std::vector<bool> wanted_channels(const Sources& sources, const UnpackPlan& plan);
 
 // Makes the same normals as unpack() of one level, followed by scale().
 class UnpackStage final : public Stage {
 public:
-    UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule, const UnpackExtras& extras);
+    UnpackStage(StoredChannels channels, const Sources& sources, const UnpackRule& rule, const UnpackPlan& plan);
 
     [[nodiscard]] std::vector<Need> needs(int first, int end) const override { return {{channels_.rows, first, end}}; }
     Result<void> make(Strip& strip) override;
@@ -48,7 +48,7 @@ private:
     const StoredChannels channels_;
     const Sources sources_;
     const UnpackRule rule_;
-    const UnpackExtras extras_;
+    const UnpackPlan plan_;
     const std::vector<bool> wanted_;  // channels
     std::mutex inspecting_;
 };

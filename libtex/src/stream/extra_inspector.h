@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// other_channels.h: looks at the channels of a map that hold no part of its normals, whether z is what it seems, and
+// extra_inspector.h: looks at the channels of a map that hold no part of its normals, whether z is what it seems, and
 // whether floats are finite.
 
 #pragma once
@@ -18,11 +18,11 @@
 
 namespace tex::inline v1 {
 
-class OtherChannels {
+class ExtraInspector {
 public:
     // `head` describes the map. Colours that the file itself states to be constant are not looked at. With
     // options.drop_others, only floats are.
-    OtherChannels(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options);
+    ExtraInspector(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options);
 
     [[nodiscard]] bool empty() const { return seen_.empty() && !judges_z_ && !lengths_ && !is_floating_; }
     // The channels to look at: bit c is set for channel c.
@@ -38,7 +38,7 @@ public:
     void add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width);
 
     // To be called after all rows: says what was found, and returns the channels.
-    [[nodiscard]] std::vector<OtherChannel> report(SourceInfo& info) const;
+    [[nodiscard]] std::vector<ExtraChannel> report(SourceInfo& info) const;
 
 private:
     struct Seen {
@@ -50,7 +50,7 @@ private:
     void look_at_lengths(const float* const (&channels)[4], int width);
     void look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const;
 
-    [[nodiscard]] std::vector<OtherChannel> found() const;
+    [[nodiscard]] std::vector<ExtraChannel> found() const;
 
     const Sources sources_;
     const bool is_floating_;
@@ -66,6 +66,6 @@ private:
 };
 
 // The channels without these.
-[[nodiscard]] std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlanes accounted_for);
+[[nodiscard]] std::vector<ExtraChannel> left_out(std::vector<ExtraChannel> channels, ExtraSet accounted_for);
 
 }  // namespace tex::inline v1

@@ -77,9 +77,9 @@ Bytes picture(int factor) {
 
 constexpr int kKept = 7, kGiven = 11, kHeights = 5;
 
-class OthersMatrix : public StreamTest {
+class ExtrasMatrix : public StreamTest {
 protected:
-    OthersMatrix() {
+    ExtrasMatrix() {
         std::ignore = StreamTest::write("given.png", picture(kGiven));
         std::ignore = StreamTest::write("heights.png", picture(kHeights));
         for (const Encoding encoding : {Encoding::rgba8, Encoding::rgba16, Encoding::rgba32f}) {
@@ -98,18 +98,18 @@ protected:
     std::string source(Encoding encoding, bool has_alpha) { return path(name_of(encoding, has_alpha)); }
 
     // What is given: planes in memory, or files that are read with the rows of the normals.
-    OtherInputs inputs(Beside beside, bool from_file) const {
-        OtherData data_given;
+    ExtraInputs inputs(Beside beside, bool from_file) const {
+        ExtraData data_given;
         if (from_file) {
-            data_given.picture = OtherPicture{path("given.png")};
+            data_given.picture = ExtraPicture{path("given.png")};
         } else {
             data_given.map = []() -> Result<Plane<float>> { return data(kGiven); };
         }
-        OtherInputs inputs;
+        ExtraInputs inputs;
         if (beside == Beside::given_alpha) inputs.alpha = data_given;
         if (beside == Beside::given_blue) inputs.blue = data_given;
         if (beside == Beside::given_length) inputs.length = data_given;
-        if (beside == Beside::baked_heights) inputs.alpha = OtherData{1.0f, {}, true};
+        if (beside == Beside::baked_heights) inputs.alpha = ExtraData{1.0f, {}, true};
         return inputs;
     }
     SourceOptions reading(Beside beside) const {
@@ -125,7 +125,7 @@ protected:
         const auto pack_by = [packing](const SourceInfo&) { return packing; };
         const auto names = [](const SourceInfo& info) {
             std::string letters;
-            for (const OtherChannel& other : info.others) letters += other.name;
+            for (const ExtraChannel& other : info.others) letters += other.name;
             return letters;
         };
         if (verb == Verb::bake) {
@@ -186,7 +186,7 @@ protected:
     void check(Verb verb, Encoding encoding, Container container, Beside beside) {
         const Encoding sources[] = {Encoding::rgba8, Encoding::rgba16, Encoding::rgba32f};
         const Encoding from = sources[(static_cast<std::size_t>(verb) + static_cast<std::size_t>(beside)) % 3];
-        const OtherPlanes held = can_hold(encoding);
+        const ExtraSet held = can_hold(encoding);
         const FormatInfo format = format_info(encoding_info(encoding).format);
         const std::string what = std::string(tex::name_of(kEncodingNames, encoding)) + " in " +
                                  std::string(tex::name_of(kContainerNames, container)) + ", verb " +
@@ -231,7 +231,7 @@ protected:
     }
 };
 
-TEST_F(OthersMatrix, EveryVerbEveryEncodingEveryChannel) {
+TEST_F(ExtrasMatrix, EveryVerbEveryEncodingEveryChannel) {
     for (const auto& row : kEncodingNames) {
         for (const Verb verb : kVerbs) {
             for (const Beside beside : kBesides) {
@@ -243,7 +243,7 @@ TEST_F(OthersMatrix, EveryVerbEveryEncodingEveryChannel) {
 
 // The encodings that have room, in all files that hold them. TIFF and WebP are written by another process, which takes
 // time.
-TEST_F(OthersMatrix, EveryContainer) {
+TEST_F(ExtrasMatrix, EveryContainer) {
     int files = 0;
     for (const auto& encoding : kEncodingNames) {
         if (!can_hold(encoding.value).blue) continue;
@@ -264,7 +264,7 @@ TEST_F(OthersMatrix, EveryContainer) {
 }
 
 // What is beside the normals is written to a file of its own, as it is in memory.
-TEST_F(OthersMatrix, ApartInEveryContainer) {
+TEST_F(ExtrasMatrix, ApartInEveryContainer) {
     for (const Encoding encoding : {Encoding::rgba8, Encoding::rgba16, Encoding::rgba32f}) {
         const std::string input = source(encoding, true);
         for (const auto& container : kContainerNames) {
@@ -274,7 +274,7 @@ TEST_F(OthersMatrix, ApartInEveryContainer) {
                 options.source.inspect = true;
                 options.write.sync = false;
                 options.pack = [](const SourceInfo&) { return PackOptions{Encoding::rgb8}; };
-                options.alpha_file = OtherFile{path("apart"), container.value, format};
+                options.apart.alpha = ExtraFile{path("apart"), container.value, format};
                 const auto done = pack_file(input, path("out"), Container::png, options);
                 ASSERT_TRUE(done) << container.name << done.error().message();
                 EXPECT_TRUE(done->source.others.empty()) << container.name;

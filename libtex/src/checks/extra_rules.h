@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// other_rules.h: what is in alpha and blue beside the normals.
+// extra_rules.h: what is in alpha and blue beside the normals.
 
 #pragma once
 
@@ -8,6 +8,6 @@
 namespace tex::inline v1 {
 
 // Errors: cancelled, out_of_memory.
-Result<void> check_other_rules(const CheckContext& context, Findings& findings);
+Result<void> check_extra_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -39,9 +39,9 @@ std::function<Result<Plane<float>>()> gives(int factor) {
     return [factor]() -> Result<Plane<float>> { return codes(factor); };
 }
 
-class GivenOthersTest : public StreamTest {
+class GivenExtrasTest : public StreamTest {
 protected:
-    GivenOthersTest() {
+    GivenExtrasTest() {
         options_.write.sync = false;
         options_.pack = [this](const SourceInfo&) { return PackOptions{encoding_, YAxis::up, Effort::fast}; };
         const Texture texture = pack(chain_from(wavy_map(kExtent)), {Encoding::float_, YAxis::up}).value();
@@ -64,14 +64,14 @@ void expect_near(const Plane<float>& a, const Plane<float>& b, float most, const
     }
 }
 
-TEST_F(GivenOthersTest, EveryEncodingHoldsWhatItSays) {
-    options_.others.blue = OtherData{1.0f, gives(3)};
+TEST_F(GivenExtrasTest, EveryEncodingHoldsWhatItSays) {
+    options_.others.blue = ExtraData{1.0f, gives(3)};
     for (const auto& row : kEncodingNames) {
         encoding_ = row.value;
         const Container kind = can_hold(Container::dds, encoding_) ? Container::dds : Container::ktx2;
-        const OtherPlanes held = can_hold(encoding_);
+        const ExtraSet held = can_hold(encoding_);
         options_.others.alpha.reset();
-        if (held.alpha) options_.others.alpha = OtherData{1.0f, gives(7)};
+        if (held.alpha) options_.others.alpha = ExtraData{1.0f, gives(7)};
         const auto done = run(kind);
         ASSERT_EQ(static_cast<bool>(done), held.blue) << row.name;
         if (!done) {
@@ -88,10 +88,10 @@ TEST_F(GivenOthersTest, EveryEncodingHoldsWhatItSays) {
     }
 }
 
-TEST_F(GivenOthersTest, TheNormalsAreThoseOfAFileWithoutThem) {
+TEST_F(GivenExtrasTest, TheNormalsAreThoseOfAFileWithoutThem) {
     ASSERT_TRUE(run(Container::dds));
     const NormalMap plain = std::move(unpack(output())->levels[0]);
-    options_.others = {OtherData{0.25f}, OtherData{1.0f, gives(5)}};
+    options_.others = {ExtraData{0.25f}, ExtraData{1.0f, gives(5)}};
     ASSERT_TRUE(run(Container::dds));
     const NormalMap with = std::move(unpack(output())->levels[0]);
     expect_near(with.x, plain.x, 0.02f, "x");
@@ -100,7 +100,7 @@ TEST_F(GivenOthersTest, TheNormalsAreThoseOfAFileWithoutThem) {
     EXPECT_TRUE(plain.alpha.empty()) << "it is 1 everywhere";
 }
 
-TEST_F(GivenOthersTest, SmallerLevelsFollowTheKind) {
+TEST_F(GivenExtrasTest, SmallerLevelsFollowTheKind) {
     const NormalMap base = wavy_map(kExtent);
     MipOptions mip;
     const RoughnessChain rough = build_roughness_chain(base, codes(3), RoughnessModel::vmf, mip).value();
@@ -109,38 +109,38 @@ TEST_F(GivenOthersTest, SmallerLevelsFollowTheKind) {
         for (int i = 0; i < kExtent.width; ++i) smooth.at(i, j) = 1.0f - smooth.at(i, j);
     }
     const RoughnessChain inverse = build_roughness_chain(base, smooth, RoughnessModel::vmf, mip).value();
-    options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(3)}};
+    options_.others = {ExtraData{1.0f, gives(3)}, ExtraData{1.0f, gives(3)}};
     for (const auto& [blue, alpha] :
-         {std::pair(OtherKind::roughness, OtherKind::gloss), std::pair(OtherKind::gloss, OtherKind::roughness),
-          std::pair(OtherKind::height, OtherKind::roughness)}) {
+         {std::pair(ExtraKind::roughness, ExtraKind::gloss), std::pair(ExtraKind::gloss, ExtraKind::roughness),
+          std::pair(ExtraKind::height, ExtraKind::roughness)}) {
         mip.roughness = RoughnessModel::vmf;
         mip.blue = blue;
         mip.alpha = alpha;
         options_.mip = mip;
         ASSERT_TRUE(run(Container::dds));
-        const auto expect_levels = [&](std::size_t channel, OtherKind kind) {
+        const auto expect_levels = [&](std::size_t channel, ExtraKind kind) {
             for (int level = 1; level < 5; ++level) {
                 const Image image = stored(level);
                 const auto k = static_cast<std::size_t>(level);
-                Plane<float> expected = (kind == OtherKind::gloss ? inverse : rough).levels[k].clone();
-                for (int j = 0; kind == OtherKind::gloss && j < expected.extent().height; ++j) {
+                Plane<float> expected = (kind == ExtraKind::gloss ? inverse : rough).levels[k].clone();
+                for (int j = 0; kind == ExtraKind::gloss && j < expected.extent().height; ++j) {
                     for (int i = 0; i < expected.extent().width; ++i) expected.at(i, j) = 1.0f - expected.at(i, j);
                 }
                 expect_near(image.planes[channel], expected, 0.501f / 255.0f,
-                            std::string(name_of(kOtherKindNames, kind)));
+                            std::string(name_of(kExtraKindNames, kind)));
             }
         };
-        if (blue != OtherKind::height) expect_levels(2, blue);
+        if (blue != ExtraKind::height) expect_levels(2, blue);
         expect_levels(3, alpha);
     }
 }
 
-TEST_F(GivenOthersTest, VerbsInMemoryGiveTheSameBytes) {
-    for (const auto& kind : kOtherKindNames) {
+TEST_F(GivenExtrasTest, VerbsInMemoryGiveTheSameBytes) {
+    for (const auto& kind : kExtraKindNames) {
         MipOptions mip;
         mip.alpha = mip.blue = kind.value;
         options_.mip = mip;
-        options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(7)}};
+        options_.others = {ExtraData{1.0f, gives(3)}, ExtraData{1.0f, gives(7)}};
         ASSERT_TRUE(run(Container::ktx2));
         NormalMap map = std::move(unpack(read_texture(input_).value())->levels[0]);
         map.blue = codes(3);
@@ -152,7 +152,7 @@ TEST_F(GivenOthersTest, VerbsInMemoryGiveTheSameBytes) {
     }
 }
 
-TEST_F(GivenOthersTest, HeightsThatAreBakedGoBesideTheirNormals) {
+TEST_F(GivenExtrasTest, HeightsThatAreBakedGoBesideTheirNormals) {
     std::vector<std::byte> grey(static_cast<std::size_t>(kExtent.texels()));
     for (std::size_t k = 0; k < grey.size(); ++k) grey[k] = static_cast<std::byte>(k * 7);
     Texture heights;
@@ -162,7 +162,7 @@ TEST_F(GivenOthersTest, HeightsThatAreBakedGoBesideTheirNormals) {
     BakeFileOptions options;
     options.write.sync = false;
     options.pack.encoding = Encoding::rgba8;
-    options.others = {{}, OtherData{1.0f, {}, true}};
+    options.others = {{}, ExtraData{1.0f, {}, true}};
     ASSERT_TRUE(bake_file(input, path("out"), Container::dds, options));
     const Texture out = output();
     for (std::size_t k = 0; k < grey.size(); ++k) ASSERT_EQ(out.levels[0].bytes[4 * k + 3], grey[k]) << k;
@@ -170,7 +170,7 @@ TEST_F(GivenOthersTest, HeightsThatAreBakedGoBesideTheirNormals) {
 }
 
 // Heights of 16 bits stay what they are in A of 16 bits and of floats, in every container.
-TEST_F(GivenOthersTest, HeightsOf16BitsLoseNothing) {
+TEST_F(GivenExtrasTest, HeightsOf16BitsLoseNothing) {
     std::vector<std::byte> grey(2 * static_cast<std::size_t>(kExtent.texels()));
     for (std::size_t k = 0; k < grey.size(); ++k) grey[k] = static_cast<std::byte>(k * 37 % 251);
     Texture heights;
@@ -180,7 +180,7 @@ TEST_F(GivenOthersTest, HeightsOf16BitsLoseNothing) {
     const Image expected = decode(heights, 0).value();
     BakeFileOptions options;
     options.write.sync = false;
-    options.others.alpha = OtherData{1.0f, {}, true};
+    options.others.alpha = ExtraData{1.0f, {}, true};
     for (const Encoding encoding : {Encoding::rgba16, Encoding::rgba16f, Encoding::rgba32f}) {
         for (const auto& kind : kContainerNames) {
             if (!can_hold(kind.value, encoding)) continue;
@@ -207,7 +207,7 @@ Texture large_picture(Extent extent, const Plane<float>& green, const Plane<floa
 }
 
 // Two channels of one file, read with the rows of the normals: the bytes of planes that are held.
-TEST_F(GivenOthersTest, FilesGiveWhatPlanesGive) {
+TEST_F(GivenExtrasTest, FilesGiveWhatPlanesGive) {
     constexpr Extent kLarge{310, 401};
     Plane<float> green(kLarge), blue(kLarge);
     for (int j = 0; j < kLarge.height; ++j) {
@@ -220,7 +220,7 @@ TEST_F(GivenOthersTest, FilesGiveWhatPlanesGive) {
     input_ = StreamTest::write("large.exr", encode_file(normals, Container::exr).value());
     encoding_ = Encoding::rgba16;
     options_.mip = MipOptions();
-    options_.mip->alpha = OtherKind::roughness;
+    options_.mip->alpha = ExtraKind::roughness;
     for (const Container type : {Container::png, Container::dds, Container::tiff}) {
         Texture picture = large_picture(kLarge, green, blue);
         picture.swizzle_known = picture.y_known = false;
@@ -231,12 +231,12 @@ TEST_F(GivenOthersTest, FilesGiveWhatPlanesGive) {
                 return stored.planes[static_cast<std::size_t>(stored.find(name))].clone();
             };
         };
-        options_.others = {OtherData{1.0f, plane_of("B")}, OtherData{1.0f, plane_of("G")}};
+        options_.others = {ExtraData{1.0f, plane_of("B")}, ExtraData{1.0f, plane_of("G")}};
         ASSERT_TRUE(run(Container::ktx2));
         const Bytes expected = bytes_of(path("out"));
         const auto from_file = [&](HeightChannel channel) {
-            OtherData data;
-            data.picture = OtherPicture{file, {}, channel};
+            ExtraData data;
+            data.picture = ExtraPicture{file, {}, channel};
             return data;
         };
         options_.others = {from_file(HeightChannel::b), from_file(HeightChannel::g)};
@@ -249,10 +249,10 @@ TEST_F(GivenOthersTest, FilesGiveWhatPlanesGive) {
     }
 }
 
-TEST_F(GivenOthersTest, WhatIsWrongWithAFileNamesIt) {
+TEST_F(GivenExtrasTest, WhatIsWrongWithAFileNamesIt) {
     const auto refuses = [this](const std::string& file, ErrorCode code, const std::string& words) {
-        OtherData data;
-        data.picture = OtherPicture{file};
+        ExtraData data;
+        data.picture = ExtraPicture{file};
         options_.others = {{}, data};
         const auto done = run(Container::dds);
         ASSERT_FALSE(done) << words;
@@ -280,7 +280,7 @@ TEST_F(GivenOthersTest, WhatIsWrongWithAFileNamesIt) {
     refuses(StreamTest::write("holes.exr", holes), ErrorCode::bad_data, "holes.exr: ");
 }
 
-TEST_F(GivenOthersTest, WhatCannotBeIsRefused) {
+TEST_F(GivenExtrasTest, WhatCannotBeIsRefused) {
     const auto refuses = [this](const std::string& words) {
         const auto done = run(Container::dds);
         ASSERT_FALSE(done) << words;
@@ -288,37 +288,37 @@ TEST_F(GivenOthersTest, WhatCannotBeIsRefused) {
         EXPECT_NE(done.error().message().find(words), std::string::npos) << done.error().message();
         EXPECT_FALSE(std::filesystem::exists(path("out")));
     };
-    options_.others = {{}, OtherData{1.5f}};
+    options_.others = {{}, ExtraData{1.5f}};
     refuses("alpha: must be from 0 to 1");
-    options_.others = {{}, OtherData{1.0f, []() -> Result<Plane<float>> { return Plane<float>(Extent{3, 2}, 0.0f); }}};
+    options_.others = {{}, ExtraData{1.0f, []() -> Result<Plane<float>> { return Plane<float>(Extent{3, 2}, 0.0f); }}};
     refuses("alpha: the map has 3x2 texels, the normals have 48x32");
-    options_.others = {{}, OtherData{1.0f, {}, true}};
+    options_.others = {{}, ExtraData{1.0f, {}, true}};
     refuses("there are no heights");
     options_.others = {};
-    options_.alpha_file = OtherFile{path("apart.png"), Container::png};
+    options_.apart.alpha = ExtraFile{path("apart.png"), Container::png};
     refuses("has no alpha beside the normals");
-    options_.alpha_file.reset();
+    options_.apart.alpha.reset();
     options_.mip = MipOptions();
     options_.mip->domain = MipDomain::slope;
-    options_.mip->alpha = OtherKind::roughness;
+    options_.mip->alpha = ExtraKind::roughness;
     refuses("roughness and gloss need the domain vector");
     options_.mip.reset();
     const Texture levels = pack(build_mip_chain(wavy_map(kExtent)).value(), {Encoding::bc5, YAxis::up}).value();
     input_ = StreamTest::write("in.dds", encode_file(levels, Container::dds).value());
-    options_.others = {OtherData{0.5f}, {}};
+    options_.others = {ExtraData{0.5f}, {}};
     refuses("has smaller levels");
 }
 
-TEST_F(GivenOthersTest, WhatIsBesideTheNormalsIsWrittenApart) {
-    options_.others = {OtherData{1.0f, gives(3)}, OtherData{1.0f, gives(7)}};
+TEST_F(GivenExtrasTest, WhatIsBesideTheNormalsIsWrittenApart) {
+    options_.others = {ExtraData{1.0f, gives(3)}, ExtraData{1.0f, gives(7)}};
     ASSERT_TRUE(run(Container::dds));
     std::filesystem::rename(path("out"), path("both.dds"));
     input_ = path("both.dds");
     options_.others = {};
     encoding_ = Encoding::rgb8;
     options_.source.inspect = true;
-    options_.blue_file = OtherFile{path("blue.png"), Container::png};
-    options_.alpha_file = OtherFile{path("alpha.tga"), Container::tga};
+    options_.apart.blue = ExtraFile{path("blue.png"), Container::png};
+    options_.apart.alpha = ExtraFile{path("alpha.tga"), Container::tga};
     const auto done = run(Container::png);
     ASSERT_TRUE(done) << done.error().message();
     EXPECT_TRUE(done->source.others.empty()) << "nothing is lost";

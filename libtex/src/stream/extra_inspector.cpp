@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stream/other_channels.h"
+#include "stream/extra_inspector.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -16,7 +16,7 @@ constexpr float kVaries = 1.5f / 255.0f;
 
 }  // namespace
 
-OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options)
+ExtraInspector::ExtraInspector(const Texture& head, Extent extent, const Sources& sources, const SourceOptions& options)
     : sources_(sources), is_floating_(format_info(head.format).sample == SampleKind::floating),
       judges_z_(!options.drop_others && !options.unpack.others.length && sources.z >= 0 && !is_floating_ &&
                 options.unpack.range != ValueRange::z01),
@@ -24,19 +24,19 @@ OtherChannels::OtherChannels(const Texture& head, Extent extent, const Sources& 
       lengths_(!options.drop_others && options.unpack.others.length && sources.z >= 0) {
     if (options.drop_others) return;
     constexpr float kNone = std::numeric_limits<float>::infinity();
-    constexpr int kAlpha = 3;
     for (int c = 0; c < format_info(head.format).channels; ++c) {
         const bool is_stated = head.swizzle_known && head.swizzle[static_cast<std::size_t>(c)] == Component::one;
         const bool is_source = c == sources.x || c == sources.y || c == sources.z;
-        if (!is_source && (c == kAlpha || !is_stated)) seen_.push_back({c, kNone, -kNone, 0.0f, 0.0f, 0.0f});
+        if (!is_source && (c == channel_of(Extra::alpha) || !is_stated))
+            seen_.push_back({c, kNone, -kNone, 0.0f, 0.0f, 0.0f});
     }
 }
 
-bool OtherChannels::wants(int channel) const {
+bool ExtraInspector::wants(int channel) const {
     return std::any_of(seen_.begin(), seen_.end(), [channel](const Seen& seen) { return seen.channel == channel; });
 }
 
-void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const {
+void ExtraInspector::look(Seen& seen, const float* const (&channels)[4], const VectorRow& normals, int width) const {
     const float* const values = channels[seen.channel];
     const float *const x = channels[sources_.x], *const y = channels[sources_.y];
     // Most such channels are constant, and a constant row repeats nothing.
@@ -55,7 +55,7 @@ void OtherChannels::look(Seen& seen, const float* const (&channels)[4], const Ve
     }
 }
 
-void OtherChannels::count_not_finite(const float* const (&channels)[4], int width) {
+void ExtraInspector::count_not_finite(const float* const (&channels)[4], int width) {
     const float *const x = channels[sources_.x], *const y = channels[sources_.y];
     const float* const z = sources_.z < 0 ? y : channels[sources_.z];
     int count = 0;
@@ -63,7 +63,7 @@ void OtherChannels::count_not_finite(const float* const (&channels)[4], int widt
     if (count > 0) not_finite_ += count;
 }
 
-void OtherChannels::look_at_lengths(const float* const (&channels)[4], int width) {
+void ExtraInspector::look_at_lengths(const float* const (&channels)[4], int width) {
     Plane<float> row(Extent{width, 1});
     values_of_lengths(channels[sources_.x], channels[sources_.y], channels[sources_.z], is_unsigned_, width,
                       row.row(0));
@@ -73,7 +73,7 @@ void OtherChannels::look_at_lengths(const float* const (&channels)[4], int width
     longest_ = std::max(longest_, *greatest);
 }
 
-void OtherChannels::add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width) {
+void ExtraInspector::add_row(int j, const float* const (&channels)[4], const VectorRow& normals, int width) {
     if (judges_z_ && j % z_step_ == 0) {
         ZEvidence z;
         z.add_row(channels[sources_.x], channels[sources_.y], channels[sources_.z], is_unsigned_, width);
@@ -99,8 +99,8 @@ void OtherChannels::add_row(int j, const float* const (&channels)[4], const Vect
     }
 }
 
-std::vector<OtherChannel> OtherChannels::found() const {
-    std::vector<OtherChannel> found;
+std::vector<ExtraChannel> ExtraInspector::found() const {
+    std::vector<ExtraChannel> found;
     for (const Seen& seen : seen_) {
         const bool repeats = std::min({seen.off_x, seen.off_y, seen.off_z}) <= kSameInBlocks;
         if (seen.greatest - seen.least > kVaries && !repeats)
@@ -110,17 +110,14 @@ std::vector<OtherChannel> OtherChannels::found() const {
     return found;
 }
 
-std::vector<OtherChannel> OtherChannels::report(SourceInfo& info) const {
+std::vector<ExtraChannel> ExtraInspector::report(SourceInfo& info) const {
     info.z_doubtful = z_.is_something_else() || z_.is_surely_something_else();
     info.not_finite = not_finite_;
     return found();
 }
 
-std::vector<OtherChannel> left_out(std::vector<OtherChannel> channels, OtherPlanes accounted_for) {
-    std::erase_if(channels, [&](const OtherChannel& channel) {
-        return (channel.name == 'A' && accounted_for.alpha) || (channel.name == 'B' && accounted_for.blue) ||
-               (channel.name == 'L' && accounted_for.length);
-    });
+std::vector<ExtraChannel> left_out(std::vector<ExtraChannel> channels, ExtraSet accounted_for) {
+    std::erase_if(channels, [&](const ExtraChannel& channel) { return channel.is_in(accounted_for); });
     return channels;
 }
 

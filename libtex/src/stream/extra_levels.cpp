@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stream/other_levels.h"
+#include "stream/extra_levels.h"
 
 #include <utility>
 
 #include <tex/types.h>
 
+#include "rows/extra_rows.h"
 #include "rows/mip_rows.h"
-#include "rows/other_rows.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -22,10 +22,10 @@ void filter_strip(const LevelFilter& filter, PlaneView<const float> from, Plane<
     }
 }
 
-Result<void> add_other(MipChain& chain, Plane<float> NormalMap::*plane, OtherKind kind, const MipOptions& options,
-                       const Execution& execution) {
+Result<void> add_extra(MipChain& chain, Extra extra, const MipOptions& options, const Execution& execution) {
+    const ExtraKind kind = kind_of(extra, options);
     const NormalMap& base = chain.levels.front();
-    const Plane<float>& values = base.*plane;
+    const Plane<float>& values = base[extra];
     if (values.empty() || chain.levels.size() < 2) return {};
     const Extent extent = base.extent();
     Plane<float> averages(extent);
@@ -37,13 +37,13 @@ Result<void> add_other(MipChain& chain, Plane<float> NormalMap::*plane, OtherKin
     auto levels = smaller_levels(base, std::move(averages), kind, options.roughness, options,
                                  static_cast<int>(chain.levels.size()), silent, {});
     if (!levels) return levels.error();
-    for (std::size_t k = 0; k < levels->size(); ++k) chain.levels[k + 1].*plane = std::move((*levels)[k]);
+    for (std::size_t k = 0; k < levels->size(); ++k) chain.levels[k + 1][extra] = std::move((*levels)[k]);
     return {};
 }
 
 }  // namespace
 
-Result<std::vector<Plane<float>>> smaller_levels(const NormalMap& normals, Plane<float> averages, OtherKind kind,
+Result<std::vector<Plane<float>>> smaller_levels(const NormalMap& normals, Plane<float> averages, ExtraKind kind,
                                                  RoughnessModel model, const MipOptions& options, int count,
                                                  const Execution& execution, ProgressSpan span) {
     std::vector<Plane<float>> levels, held;  // `held`: the averages of the larger level
@@ -77,9 +77,9 @@ Result<std::vector<Plane<float>>> smaller_levels(const NormalMap& normals, Plane
     return levels;
 }
 
-Result<void> add_others(MipChain& chain, const MipOptions& options, const Execution& execution) {
-    for (const OtherPlace& place : kOtherPlaces) {
-        if (auto done = add_other(chain, place.plane, kind_of(place, options), options, execution); !done) return done;
+Result<void> add_extras(MipChain& chain, const MipOptions& options, const Execution& execution) {
+    for (const Extra extra : kExtras) {
+        if (auto done = add_extra(chain, extra, options, execution); !done) return done;
     }
     return {};
 }

@@ -24,7 +24,7 @@ Plane<float> data(int factor, Extent extent = kExtent) {
     return plane;
 }
 
-class OiioOthers : public testing::Test {
+class OiioExtras : public testing::Test {
 protected:
     std::string file(const std::string& name, MipChain chain, Encoding encoding) {
         const auto written = write_texture(scratch_.path(name), *pack(chain, {encoding}));
@@ -55,7 +55,7 @@ void expect_channel(OIIO::ImageInput& input, int channel, const Plane<float>& ex
     }
 }
 
-TEST_F(OiioOthers, AlphaAndBlueAreChannels) {
+TEST_F(OiioExtras, AlphaAndBlueAreChannels) {
     const std::vector<std::string> with_alpha = {"R", "G", "B", "A"}, with_blue = {"R", "G", "B", "blue"};
     for (const Encoding encoding : {Encoding::rgba8, Encoding::rgba16, Encoding::rgba16f, Encoding::rgba32f}) {
         const std::string name(name_of(kEncodingNames, encoding));
@@ -90,7 +90,7 @@ TEST_F(OiioOthers, AlphaAndBlueAreChannels) {
     }
 }
 
-TEST_F(OiioOthers, LengthsAreAChannelIfTheConfigurationSaysSo) {
+TEST_F(OiioExtras, LengthsAreAChannelIfTheConfigurationSaysSo) {
     const std::string path = file("l.ktx2", chain_with(&NormalMap::length, 7), Encoding::float_);
     const auto input = new_input();
     ImageSpec spec, config;
@@ -106,7 +106,7 @@ TEST_F(OiioOthers, LengthsAreAChannelIfTheConfigurationSaysSo) {
 }
 
 // From file to file, with all levels, as programs copy.
-TEST_F(OiioOthers, CopiesHaveTheSameData) {
+TEST_F(OiioExtras, CopiesHaveTheSameData) {
     for (const auto place : {&NormalMap::alpha, &NormalMap::blue}) {
         for (const Encoding encoding : {Encoding::rgba8, Encoding::rgba16, Encoding::rgba32f}) {
             MipChain chain = bumpy_chain(kExtent);
@@ -129,7 +129,7 @@ TEST_F(OiioOthers, CopiesHaveTheSameData) {
     }
 }
 
-TEST_F(OiioOthers, ProgramsWriteTheBytesOfTheCommands) {
+TEST_F(OiioExtras, ProgramsWriteTheBytesOfTheCommands) {
     MipChain chain = bumpy_chain({64, 32});
     chain.levels.resize(1);
     chain.levels[0].alpha = data(7, {64, 32});
@@ -158,7 +158,7 @@ TEST_F(OiioOthers, ProgramsWriteTheBytesOfTheCommands) {
        "test ! -e no.dds");
 }
 
-TEST_F(OiioOthers, MistakesAreErrors) {
+TEST_F(OiioExtras, MistakesAreErrors) {
     const auto error = [&](const ImageSpec& spec) {
         const auto output = new_output();
         EXPECT_FALSE(output->open(scratch_.path("x.dds"), spec, ImageOutput::Create));
@@ -177,7 +177,7 @@ TEST_F(OiioOthers, MistakesAreErrors) {
 }
 
 // Only what alpha was multiplied with is divided by it.
-TEST_F(OiioOthers, NamedChannelsAreNotDividedByAlpha) {
+TEST_F(OiioExtras, NamedChannelsAreNotDividedByAlpha) {
     ImageSpec spec(4, 4, 5, TypeDesc::FLOAT);
     spec.channelnames = {"R", "G", "B", "blue", "A"};
     spec.alpha_channel = 4;

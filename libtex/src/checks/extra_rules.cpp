@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "checks/other_rules.h"
+#include "checks/extra_rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,7 +115,7 @@ Result<void> check_stored_z(const CheckContext& context, Findings& findings) {
 
 }  // namespace
 
-Result<void> check_other_rules(const CheckContext& context, Findings& findings) {
+Result<void> check_extra_rules(const CheckContext& context, Findings& findings) {
     if (!context.has_vectors) return {};
     check_free_alpha(context, findings);
     return check_stored_z(context, findings);

@@ -16,7 +16,7 @@
 namespace tex::cli {
 namespace {
 
-class Others : public testing::Test {
+class Extras : public testing::Test {
 protected:
     Others() {
         std::filesystem::copy_file(TEX_SOURCE_DIR "/samples/bricks.png", scratch_.path("h.png"));
@@ -53,7 +53,7 @@ protected:
     Scratch scratch_;
 };
 
-TEST_F(Others, HeightsGoIntoAlpha) {
+TEST_F(Extras, HeightsGoIntoAlpha) {
     run("bake-normals h.png -o nh.png --format rgba8 --alpha height --bumpiness 6");
     EXPECT_TRUE(equal("nh.png", 3, "h.png", 0));
     EXPECT_TRUE(equal("nh.png", 0, "n.png", 0));
@@ -61,7 +61,7 @@ TEST_F(Others, HeightsGoIntoAlpha) {
     EXPECT_TRUE(equal("nh.dds", 3, "h.png", 0));
 }
 
-TEST_F(Others, ALayoutRoundTrips) {
+TEST_F(Extras, ALayoutRoundTrips) {
     run("pack-normals n.png -o pbr.png --layout labpbr --blue ao.png:g --alpha h.png");
     EXPECT_TRUE(equal("pbr.png", 2, "ao.png", 1));
     EXPECT_TRUE(equal("pbr.png", 3, "h.png", 0));
@@ -80,7 +80,7 @@ TEST_F(Others, ALayoutRoundTrips) {
 }
 
 // Terrain3D: 8 bits of each component hold occlusion near 1 to seven codes.
-TEST_F(Others, OcclusionGoesIntoLengths) {
+TEST_F(Extras, OcclusionGoesIntoLengths) {
     constexpr float kCodes = 7.5f;
     run("pack-normals n.png -o t.png --layout terrain3d --alpha h.png --length ao.png:g");
     EXPECT_TRUE(equal("t.png", 3, "h.png", 0));
@@ -113,7 +113,7 @@ TEST_F(Others, OcclusionGoesIntoLengths) {
     EXPECT_NE(lost.err.find("hold data beside the normals"), std::string::npos) << lost.err;
 }
 
-TEST_F(Others, GoThroughAConversion) {
+TEST_F(Extras, GoThroughAConversion) {
     scratch_.write("sheet.obj", kSheetObj);
     run("pack-normals n.png -o nh.png --format rgba8 --alpha h.png --length ao.png:g");
     run("convert-normals nh.png -o o.png --mesh sheet.obj --to object --format rgba8 --length-in occlusion");
@@ -142,7 +142,7 @@ TEST_F(Others, GoThroughAConversion) {
             4, "dxt5nm has no alpha for data beside the normals; these formats have: rgba8");
 }
 
-TEST_F(Others, ABlendOfAnotherExtentHasThem) {
+TEST_F(Extras, ABlendOfAnotherExtentHasThem) {
     run("pack-normals n.png -o nh.png --format rgba8 --alpha h.png");
     run("blend-normals nh.png n.png -o half.png --format rgba8 --extent 256x256");
     ASSERT_EQ(shell(scratch_, "convert h.png -filter box -resize 50% half_h.png").code, 0);
@@ -155,7 +155,7 @@ TEST_F(Others, ABlendOfAnotherExtentHasThem) {
     EXPECT_EQ(shell(scratch_, twice + " --drop").err, "");
 }
 
-TEST_F(Others, SixteenBitsStaySixteen) {
+TEST_F(Extras, SixteenBitsStaySixteen) {
     ASSERT_EQ(shell(scratch_, "convert h.png -blur 0x3 -depth 16 deep.png").code, 0);
     for (const std::string type : {"png", "tif"}) {
         run("bake-normals deep.png -o nh." + type + " --format rgba16 --alpha height --bumpiness 6");
@@ -181,7 +181,7 @@ TEST_F(Others, SixteenBitsStaySixteen) {
 }
 
 // Other programs take apart what we have put together, and we what they have: alpha is unassociated.
-TEST_F(Others, OtherProgramsSeeTheSameAlpha) {
+TEST_F(Extras, OtherProgramsSeeTheSameAlpha) {
     // A file with a picture of its alpha and one of its colours.
     const struct {
         const char* name;
@@ -219,7 +219,7 @@ TEST_F(Others, OtherProgramsSeeTheSameAlpha) {
     }
 }
 
-TEST_F(Others, PatternsNameAFileForEachInput) {
+TEST_F(Extras, PatternsNameAFileForEachInput) {
     std::filesystem::create_directory(scratch_.path("in"));
     for (const std::string name : {"a", "b"}) {
         std::filesystem::copy_file(scratch_.path("n.png"), scratch_.path("in/" + name + "_n.png"));
@@ -230,7 +230,7 @@ TEST_F(Others, PatternsNameAFileForEachInput) {
     EXPECT_TRUE(equal("out/b_n.tga", 3, "h.png", 0));
 }
 
-TEST_F(Others, WhatCannotBeIsOneError) {
+TEST_F(Extras, WhatCannotBeIsOneError) {
     refuses("mip-normals n.png -o x.dds --format bc5 --blue ao.png:g --kind roughness", 2,
             "bc5 has no room for --blue; these formats have: rgb8");
     refuses("pack-normals n.png -o x.png --layout labpbr", 2, "give --blue FILE, or --blue 1 for none");

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "rows/other_rows.h"
+#include "rows/extra_rows.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kernels/roughness.h"
+#include "rows/usable.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -17,18 +18,44 @@ void invert(const float* from, int width, float* to) {
 
 }  // namespace
 
-OtherKind kind_of(const OtherPlace& place, const MipOptions& options) {
-    if (place.plane == &NormalMap::alpha) return options.alpha;
-    return place.plane == &NormalMap::blue ? options.blue : OtherKind::occlusion;
+Result<void> check_together(ExtraSet extras) {
+    if (!extras.blue || !extras.length) return {};
+    return bad_option("blue and length exclude each other: without z, a vector has no length");
 }
 
-void values_to_average(OtherKind kind, const float* values, int width, float* out) {
+int channel_of(Extra extra) { return extra == Extra::alpha ? 3 : extra == Extra::blue ? 2 : -1; }
+
+void add_planes(NormalMap& map, ExtraSet extras) {
+    for (const Extra extra : kExtras) {
+        if (extras[extra]) map[extra] = Plane<float>(map.extent());
+    }
+}
+
+void unpack_extras(ExtraSet extras, const VectorRow& vectors, bool is_unsigned, const float* const (&channels)[4],
+                   NormalMap& map, int j) {
+    const int width = map.extent().width;
+    for (const Extra extra : kExtras) {
+        if (!extras[extra]) continue;
+        if (const int channel = channel_of(extra); channel >= 0) {
+            std::copy_n(channels[channel], width, map[extra].row(j));
+        } else {
+            values_of_lengths(vectors.x, vectors.y, vectors.z, is_unsigned, width, map[extra].row(j));
+        }
+    }
+}
+
+ExtraKind kind_of(Extra extra, const MipOptions& options) {
+    if (extra == Extra::length) return ExtraKind::occlusion;
+    return extra == Extra::alpha ? options.alpha : options.blue;
+}
+
+void values_to_average(ExtraKind kind, const float* values, int width, float* out) {
     if (!follows_normals(kind)) {
         std::copy_n(values, width, out);
         return;
     }
     Plane<float> roughness(Extent{width, 1});
-    if (kind == OtherKind::gloss) {
+    if (kind == ExtraKind::gloss) {
         invert(values, width, roughness.row(0));
         values = roughness.row(0);
     }
@@ -36,14 +63,14 @@ void values_to_average(OtherKind kind, const float* values, int width, float* ou
     clean_roughness(values, width, limited.row(0), out);
 }
 
-void values_of_averages(OtherKind kind, RoughnessModel model, const VectorRow& mean, const float* averages, int width,
+void values_of_averages(ExtraKind kind, RoughnessModel model, const VectorRow& mean, const float* averages, int width,
                         float* out) {
     if (!follows_normals(kind)) {
         std::copy_n(averages, width, out);
         return;
     }
     roughness_of_averages(model, mean.x, mean.y, mean.z, averages, width, out);
-    if (kind == OtherKind::gloss) invert(out, width, out);
+    if (kind == ExtraKind::gloss) invert(out, width, out);
 }
 
 void values_of_lengths(const float* x, const float* y, const float* z, bool is_unsigned, int width, float* out) {

@@ -21,9 +21,9 @@ namespace {
 
 constexpr Extent kExtent{32, 16};
 
-class OtherChannelsTest : public StreamTest {
+class ExtraInspectorTest : public StreamTest {
 protected:
-    OtherChannelsTest() {
+    ExtraInspectorTest() {
         options_.write.sync = false;
         options_.source.inspect = true;
         options_.pack = [this](const SourceInfo&) { return PackOptions{encoding_, YAxis::up, Effort::fast}; };
@@ -52,7 +52,7 @@ protected:
     // The channels that are left out, as letters.
     static std::string names(const SourceInfo& info) {
         std::string names;
-        for (const OtherChannel& other : info.others) names += other.name;
+        for (const ExtraChannel& other : info.others) names += other.name;
         return names;
     }
 
@@ -60,7 +60,7 @@ protected:
     Encoding encoding_ = Encoding::rgba8;
 };
 
-TEST_F(OtherChannelsTest, AlphaStaysInEveryFileOfRgba8) {
+TEST_F(ExtraInspectorTest, AlphaStaysInEveryFileOfRgba8) {
     for (const Container from : {Container::png, Container::dds, Container::ktx2, Container::tga}) {
         for (const Container to : {Container::png, Container::dds, Container::ktx2, Container::tga}) {
             const auto done = run(write(texture(), from), to);
@@ -73,7 +73,7 @@ TEST_F(OtherChannelsTest, AlphaStaysInEveryFileOfRgba8) {
     }
 }
 
-TEST_F(OtherChannelsTest, SmallerLevelsHoldTheMeanOfAlpha) {
+TEST_F(ExtraInspectorTest, SmallerLevelsHoldTheMeanOfAlpha) {
     for (const MipDomain domain : {MipDomain::vector, MipDomain::slope}) {
         options_.mip = MipOptions();
         options_.mip->domain = domain;
@@ -103,7 +103,7 @@ TEST_F(OtherChannelsTest, SmallerLevelsHoldTheMeanOfAlpha) {
     }
 }
 
-TEST_F(OtherChannelsTest, WhatAnOutputLacksIsNamed) {
+TEST_F(ExtraInspectorTest, WhatAnOutputLacksIsNamed) {
     const std::string input = write(texture(), Container::png);
     encoding_ = Encoding::bc5;
     EXPECT_EQ(names(run(input, Container::dds)->source), "A");
@@ -119,7 +119,7 @@ TEST_F(OtherChannelsTest, WhatAnOutputLacksIsNamed) {
     EXPECT_EQ(names(run(input, Container::dds)->source), "");
 }
 
-TEST_F(OtherChannelsTest, AreLeftOutWhenAsked) {
+TEST_F(ExtraInspectorTest, AreLeftOutWhenAsked) {
     options_.source.drop_others = true;
     const auto done = run(write(texture(), Container::png), Container::png);
     ASSERT_TRUE(done);
@@ -128,7 +128,7 @@ TEST_F(OtherChannelsTest, AreLeftOutWhenAsked) {
 }
 
 // Constants and copies of x, y or z are no data of their own.
-TEST_F(OtherChannelsTest, RepetitionsAreNotNamed) {
+TEST_F(ExtraInspectorTest, RepetitionsAreNotNamed) {
     encoding_ = Encoding::bc5;
     Texture plain = texture();
     for (std::size_t k = 0; k < 512; ++k) plain.levels[0].bytes[4 * k + 3] = std::byte{200};
@@ -148,7 +148,7 @@ TEST_F(OtherChannelsTest, RepetitionsAreNotNamed) {
     EXPECT_EQ(names(run(write(labpbr, Container::png), Container::dds)->source), "B");
 }
 
-TEST_F(OtherChannelsTest, TheAlphaOfTheBaseStaysInABlend) {
+TEST_F(ExtraInspectorTest, TheAlphaOfTheBaseStaysInABlend) {
     const std::string base = write(texture(), Container::png);
     BlendFileOptions blend;
     blend.source.inspect = true;
@@ -163,7 +163,7 @@ TEST_F(OtherChannelsTest, TheAlphaOfTheBaseStaysInABlend) {
 }
 
 // The alpha of the base is sampled as its normals are: bilinearly, or from means if the result is smaller.
-TEST_F(OtherChannelsTest, TheAlphaOfTheBaseFollowsTheExtentOfABlend) {
+TEST_F(ExtraInspectorTest, TheAlphaOfTheBaseFollowsTheExtentOfABlend) {
     const std::string base = write(texture(), Container::png);
     BlendFileOptions blend;
     blend.source.inspect = true;
@@ -206,7 +206,7 @@ TEST_F(OtherChannelsTest, TheAlphaOfTheBaseFollowsTheExtentOfABlend) {
     EXPECT_EQ(names(blend_file(base, path("out"), Container::png, blend)->source), "A");
 }
 
-TEST_F(OtherChannelsTest, BytesDoNotDependOnSizesAndThreads) {
+TEST_F(ExtraInspectorTest, BytesDoNotDependOnSizesAndThreads) {
     options_.mip = MipOptions();
     const std::string input = write(texture(), Container::png);
     ASSERT_TRUE(run(input, Container::ktx2));

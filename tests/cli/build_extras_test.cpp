@@ -11,9 +11,9 @@
 namespace tex::cli {
 namespace {
 
-class BuildOthers : public testing::Test {
+class BuildExtras : public testing::Test {
 protected:
-    BuildOthers() {
+    BuildExtras() {
         for (const std::string name : {"a", "b"}) {
             std::filesystem::create_directories(scratch_.path("art/" + name));
             scratch_.add_sample("bricks.png", "art/" + name + "/" + name + "_h.png");
@@ -39,7 +39,7 @@ protected:
     Scratch scratch_;
 };
 
-TEST_F(BuildOthers, EachOutputHasItsOwn) {
+TEST_F(BuildExtras, EachOutputHasItsOwn) {
     manifest(
         "steps = [ { mip = {} } ]\noutputs = [\n"
         "  { format = \"rgba8\", alpha = \"{dir}/{stem:-_n}_h.png\", kind = \"height\", name = "
@@ -69,7 +69,7 @@ TEST_F(BuildOthers, EachOutputHasItsOwn) {
     EXPECT_NE(ran.err.find("a_h.png"), std::string::npos) << ran.err;
 }
 
-TEST_F(BuildOthers, AlphaGoesAlongFromStepToStep) {
+TEST_F(BuildExtras, AlphaGoesAlongFromStepToStep) {
     manifest(
         "steps = [ { scale = { scale = 0.5, alpha = \"{dir}/{stem:-_n}_h.png\" } }, { blend = { detail = "
         "\"art/a/a_n.png\" } }, { mip = {} } ]\noutputs = [ { format = \"rgba16\", name = \"out/{stem}.ktx2\" } ]\n");
@@ -89,7 +89,7 @@ TEST_F(BuildOthers, AlphaGoesAlongFromStepToStep) {
     EXPECT_EQ(made(), "1") << "the file of a later step is in the key";
 }
 
-TEST_F(BuildOthers, WhatCannotBeIsAnErrorOfTheManifest) {
+TEST_F(BuildExtras, WhatCannotBeIsAnErrorOfTheManifest) {
     const auto refuses = [this](const std::string& rule, const std::string& words) {
         manifest(rule);
         const Ran ran = shell(scratch_, "build-normals --no-sync");
