@@ -123,23 +123,7 @@ Result<void> PackCommand::process_model(Job& job) {
     if (output.of(job.task.engine).y == YAxis::down)
         repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
     if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
-    MeshReadOptions how;
-    how.reader = job.read_options;
-    const auto written = write_model(job.task.input, job.task.output, changes, how, job.write_options);
-    if (!written) return written.error();
-    job.wrote(job.task.output);
-    for (const ModelFile& file : written->files) {
-        if (file.path == job.task.output) continue;
-        job.wrote(file.path);
-        job.report["files"].push_back(file.path);
-    }
-    const auto warn_of = [&](const std::vector<std::string>& names, const char* what) {
-        if (names.empty()) return;
-        const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
-        job.warn(fmt::format("it names {}{}, which {}", printable(names.front()), more, what));
-    };
-    warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
-    warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
+    if (auto written = write_model_output(job, changes); !written) return written;
     std::ignore = job.reached(1.0);
     return {};
 }
