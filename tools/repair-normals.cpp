@@ -277,7 +277,9 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         for (const MapOfModel& map : maps) picture.maps.push_back(*map->map);
         picture.bytes = std::move(*bytes);
     }
-    return is_refused || dry_run_ ? Result<void>() : cli::write_model_of(job, changes);
+    if (is_refused || dry_run_) return {};
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    return cli::write_model_output(job, changes);
 }
 
 Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read) {

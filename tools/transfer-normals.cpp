@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <tex/tex.h>
 
 #include "batch/batch.h"
+#include "batch/model_plan.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/guides.h"
@@ -22,11 +24,18 @@
 #include "options/rays.h"
 #include "options/tangent_space.h"
 #include "reports/transfer_report.h"
+#include "tasks/model_output.h"
 #include "tasks/written_levels.h"
 
 namespace {
 
 using namespace tex;
+
+// Whether several triangles share most texels, as where UVs tile a picture. Mirrored halves of a model do not: each
+// texel has two.
+bool repeats(const TransferredMaps& maps, int subsamples) {
+    return maps.overlaps > 2 * maps.covered * subsamples * subsamples;
+}
 
 class TransferNormals : public cli::Converter {
 public:
@@ -35,11 +44,19 @@ public:
 private:
     [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override;
+    void set_material_rules(cli::OutputRules& rules) const;
+    // Adds the pictures that models name.
+    void add_pictures(const std::vector<std::string>& models, std::vector<std::string>& files_of) const;
+    // Whether the output is the low model with maps for its materials, and whether each of them gets an output.
+    [[nodiscard]] bool writes_models() const { return cli::writes_models(files); }
+    [[nodiscard]] bool takes_all_materials() const { return low_.material() == "all"; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
-    // Tiles of a mesh share the high one, and each has a tree of it.
+    // Tiles and materials of a mesh share the high one, and each has a tree of it.
     [[nodiscard]] std::size_t most_at_once(const std::vector<cli::Task>& tasks) const override {
-        const auto is_tile = [](const cli::Task& task) { return task.is_tile_of_mesh(); };
-        return std::any_of(tasks.begin(), tasks.end(), is_tile) ? 1 : cli::kMostFilesAtOnce;
+        const auto shares = [](const cli::Task& task) {
+            return task.is_tile_of_mesh() || task.model || task.model_output;
+        };
+        return std::any_of(tasks.begin(), tasks.end(), shares) ? 1 : cli::kMostFilesAtOnce;
     }
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     // The meshes of a job.
@@ -47,10 +64,18 @@ private:
         cli::MeshSpace low;
         std::shared_ptr<const cli::HighParts> high;
     };
+    [[nodiscard]] Result<std::shared_ptr<const cli::HighParts>> read_high(cli::Job& job) const;
     [[nodiscard]] Result<Meshes> read(cli::Job& job) const;
-    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const Meshes& meshes) const;
+    [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const Meshes& meshes, const cli::HighPictures& pictures,
+                                               Extent extent) const;
     [[nodiscard]] Result<void> make(cli::Job& job);
+    [[nodiscard]] Result<PackedTexture> pack_maps(cli::Job& job, TransferredMaps& maps, PackOptions& with) const;
     [[nodiscard]] Result<void> write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps);
+    // A model with maps for its materials.
+    [[nodiscard]] Result<void> make_model(cli::Job& job);
+    // Whether one can be made for the material of the job.
+    [[nodiscard]] Result<bool> make_picture(cli::Job& job, const cli::HighPictures& pictures,
+                                            std::shared_ptr<const cli::HighParts> high, ModelPicture& picture);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override { return report_.write(console); }
 
     cli::HighMeshes high_;
@@ -67,6 +92,7 @@ private:
 TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("LOW HIGH... -o FILE");
     command.usage("LOW... --high PATTERN --out-dir DIR");
+    command.usage("LOW HIGH... -o MODEL");
     command.input("LOW HIGH...",
                   "meshes (glTF, GLB, OBJ, FBX, PLY ...): the one that gets the map, then those that rays hit");
     files.add(command, true);
@@ -75,7 +101,7 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
     low_.add_low(command);
     rays_.add(command);
     guides_.add(command);
-    pictures_.add(command);
+    pictures_.add(command, [this] { return writes_models(); });
     maps_.add(command, files);
     ids_.add(command, files);
     output.add(command, cli::default_encodings(), "up");
@@ -86,6 +112,8 @@ TransferNormals::TransferNormals(const cli::ProgramRow& row) : Converter(row) {
                     "The high mesh's normals as a DXT5nm texture with all its levels.");
     command.example("transfer-normals rock_low.glb rock_high.glb -o rock_n.png --report rock.html",
                     "A page with the result beside the high mesh, missed texels in red.");
+    command.example("transfer-normals cat_low.glb cat.glb -o cat_lod.glb",
+                    "A simplified model with maps that bring back what it lost.");
     command.example("transfer-normals low.glb high.glb -o n.png --occlusion-out ao.png",
                     "Ambient occlusion beside the map.");
     command.example(
@@ -115,9 +143,12 @@ cli::OutputRules TransferNormals::rules() const {
     rules.batch = Container::dds;
     rules.joins = !high_.is_given();
     if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
+    if (rules.joins && pictures_.takes_own()) add_pictures(command.inputs(), rules.shared);
     rules.tiles = [this](const std::string& input) { return low_.tiles_of_low(input, running.read); };
+    set_material_rules(rules);
     rules.amend = [this](cli::Task& task) {
         high_.amend(task);
+        if (high_.is_given() && pictures_.takes_own()) add_pictures(high_.names_of(task), task.own);
         guides_.amend(task);
         pictures_.amend(task);
         ids_.amend(task);
@@ -126,7 +157,47 @@ cli::OutputRules TransferNormals::rules() const {
     return rules;
 }
 
+void TransferNormals::add_pictures(const std::vector<std::string>& models, std::vector<std::string>& files_of) const {
+    MeshReadOptions how;
+    how.reader = running.read;
+    for (const std::string& model : models) {
+        for (std::string& file : cli::files_beside_model(model, how))
+            if (!file.empty()) files_of.push_back(std::move(file));
+    }
+}
+
+// If materials get maps, nothing else chooses parts of the low mesh. Guides and reports are for one map.
+void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
+    const std::vector<std::string> idle = {"--primitive", "--node", "--uv-set", "--tile", "--cage", "--report"};
+    MeshReadOptions how;
+    how.reader = running.read;
+    if (writes_models()) {
+        rules.models = takes_all_materials() ? "" : low_.material();
+        rules.writes_models = true;
+        rules.lods = low_.tangents();
+        rules.not_for_models = idle;
+        for (const char* const name :
+             {"--skew", "--offset", "--object-out", "--height-out", "--position-out", "--occlusion-out", "--bent-out",
+              "--thickness-out", "--color-out", "--vertex-color-out", "--missed-out", "--id-out"})
+            rules.not_for_models.emplace_back(name);
+        return;
+    }
+    if (!takes_all_materials()) return;
+    if (const auto given = command.given_of(idle); !given.empty())
+        throw cli::UsageError("--material all and " + given.front() + " contradict each other");
+    rules.materials = [this, how](const cli::Input& input) {
+        std::vector<cli::Input> inputs;
+        for (auto& material : cli::materials_of_model(input.name, "", how)) {
+            inputs.push_back(input);
+            inputs.back().model = std::move(material);
+        }
+        return inputs;
+    };
+}
+
 Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
+    if (writes_models() && mips_.levels.value_or(1) != 1)
+        throw cli::UsageError("--mips", "models hold no levels: engines build them");
     mips_.check(tasks);
     for (const cli::Task& task : tasks) {
         if (task.joined.empty() && !high_.is_given())
@@ -138,8 +209,12 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
     return {};
 }
 
+Result<std::shared_ptr<const cli::HighParts>> TransferNormals::read_high(cli::Job& job) const {
+    return high_.read(job, {pictures_.is_given(), maps_.wants_vertex_colors(), pictures_.takes_own()});
+}
+
 Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
-    auto high = high_.read(job, {pictures_.is_given(), maps_.wants_vertex_colors()});
+    auto high = read_high(job);
     if (!high) return high.error();
     auto low = low_.of_low(job.task, job.read_options, {job.threads(), {}});
     if (!low) return high_.with_order(low.error());
@@ -152,7 +227,8 @@ Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
     return Meshes{std::move(*low), std::move(*high)};
 }
 
-Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes) const {
+Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes, const cli::HighPictures& pictures,
+                                              Extent extent) const {
     const cli::MeshSpace& low = meshes.low;
     const cli::HighParts& high = *meshes.high;
     high_.compare(job, low.selected().part, high);
@@ -167,34 +243,38 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshe
         std::all_of(high.parts.begin(), high.parts.end(), [](const MeshPart& part) { return part.colors.empty(); });
     if (maps_.wants_vertex_colors() && is_plain)
         job.warn("the high mesh has no vertex colours, so that --vertex-color-out is white");
-    const auto pictures = pictures_.read(job, high);
-    if (!pictures) return pictures.error();
-    inputs.high_details = pictures->details;
+    inputs.high_details = pictures.details;
     ids_.number(high, inputs);
     inputs.high_places = high.places;
-    TransferOptions with = rays_.transfer();
+    // A simplified model lies on the other one, and what stands before it is another part.
+    TransferOptions with = rays_.transfer(writes_models() ? HitChoice::nearest : HitChoice::outermost);
     if (guides_.wants_straight()) with.rays = RayMode::straight;
     maps_.request(with);
     if (!job.reached(0.1)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     cli::RaySpeed speed;
     inputs.rays = &speed.rays();
     job.show([&speed] { return speed.short_words(); });
-    auto maps = transfer(rays_.extent(), low.space(), high.parts, inputs, with, job.until(0.8));
+    auto maps = transfer(extent, low.space(), high.parts, inputs, with, job.until(0.8));
     job.show({});
     if (maps && with.has_second_rays() && job.task.output != "-")
         job.say(fmt::format("{}: {}\n", cli::printable(job.task.output), speed.words()));
     return maps;
 }
 
-Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps) {
+Result<PackedTexture> TransferNormals::pack_maps(cli::Job& job, TransferredMaps& maps, PackOptions& with) const {
     const auto chain =
         build_mip_chain(std::move(maps.map), mips_.options(mips_.levels_for(job.task), {}), job.until(0.85));
     if (!chain) return chain.error();
     const cli::OutputOptions own = output.of(job.task.engine);
     constexpr bool kKnown = true;
-    const PackOptions with =
-        own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
-    auto texture = pack(*chain, with, job.until(0.95));
+    with = own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
+    return pack(*chain, with, job.until(0.95));
+}
+
+Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps) {
+    const cli::OutputOptions own = output.of(job.task.engine);
+    PackOptions with;
+    auto texture = pack_maps(job, maps, with);
     if (!texture) return texture.error();
     std::optional<RdoReport> rdo;
     if (with.rdo.mean > 0.0f) rdo = texture->rdo;
@@ -214,7 +294,9 @@ Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, Transfe
 Result<void> TransferNormals::make(cli::Job& job) {
     const auto meshes = read(job);
     if (!meshes) return meshes.error();
-    auto maps = cast(job, *meshes);
+    const auto pictures = pictures_.read(job, *meshes->high);
+    if (!pictures) return pictures.error();
+    auto maps = cast(job, *meshes, *pictures, rays_.extent());
     if (!maps) return maps.error();
     if (auto judged = rays_.judge(job, *maps, guides_.remedy()); !judged) return judged;
     if (auto written = write(job, *meshes, *maps); !written) return written;
@@ -225,7 +307,76 @@ Result<void> TransferNormals::make(cli::Job& job) {
     return {};
 }
 
+// The map of one material, whose job this is.
+Result<bool> TransferNormals::make_picture(cli::Job& job, const cli::HighPictures& pictures,
+                                           std::shared_ptr<const cli::HighParts> high, ModelPicture& picture) {
+    const cli::ModelInput& material = *job.task.model;
+    auto low = low_.of_low(job.task, job.read_options, {job.threads(), {}});
+    if (!low) return low.error();
+    low_.note(job, *low);
+    Extent extent = rays_.extent(pictures.largest_own.width > 0 ? pictures.largest_own : rays_.extent());
+    if (!rays_.has_extent() && material.map->image >= 0) {
+        const auto model = material.read(cli::LastModel::Part::all, job.read_options);
+        if (!model) return model.error();
+        const auto old = read_map(**model, *material.map, job.read_options);
+        if (!old) return old.error();
+        extent = old->extent();
+    }
+    const Meshes meshes{std::move(*low), std::move(high)};
+    auto maps = cast(job, meshes, pictures, extent);
+    if (!maps) return maps.error();
+    if (repeats(*maps, rays_.transfer().subsamples)) {
+        job.warn("its UVs repeat the picture, so that no map can be made for it; it stays as it is");
+        return false;
+    }
+    if (auto judged = rays_.judge(job, *maps, guides_.remedy()); !judged) return judged.error();
+    job.say(fmt::format("{}: {}\n", cli::printable(job.task.name()), cli::reach_of(*maps)));
+    PackOptions with;
+    const auto texture = pack_maps(job, *maps, with);
+    if (!texture) return texture.error();
+    auto bytes =
+        encode_file(*texture, job.task.container, output.of(job.task.engine).write_options(job), {job.threads(), {}});
+    if (!bytes) return bytes.error().of(job.task.name());
+    picture.bytes = std::move(*bytes);
+    material.report(job.report);
+    cli::report_texture(job, texture->extent(), 1, with, picture.bytes.size(), std::nullopt);
+    return true;
+}
+
+Result<void> TransferNormals::make_model(cli::Job& job) {
+    const cli::ModelOutput& model = *job.task.model_output;
+    ModelChanges changes = model.changes(job.task.container);
+    const auto high = read_high(job);
+    if (!high) return high.error();
+    const auto pictures = pictures_.read(job, **high);
+    if (!pictures) return pictures.error();
+    for (std::size_t k = 0; k < changes.pictures.size(); ++k) {
+        cli::Task task = job.task;
+        task.model_output = nullptr;
+        task.model = model.images[k].front();
+        const auto count = static_cast<double>(changes.pictures.size());
+        const auto advance = [&](double done, const std::string&) {
+            return job.reached(0.95 * (static_cast<double>(k) + done) / count);
+        };
+        cli::Job one(task, job.console, job.read_options, job.write_options, job.threads(), advance);
+        const auto made = make_picture(one, *pictures, *high, changes.pictures[k]);
+        if (!made) return made.error();
+        job.take(one);
+        if (*made) job.report["maps"].push_back(std::move(one.report));
+    }
+    std::erase_if(changes.pictures, [](const ModelPicture& picture) { return picture.bytes.empty(); });
+    if (changes.pictures.empty()) return Error{ErrorCode::bad_option, job.task.input, "no map can be made for it"};
+    auto tangents = cli::tangents_for(job, changes, low_.tangents());
+    if (!tangents) return tangents.error();
+    changes.tangents = std::move(*tangents);
+    if (output.of(job.task.engine).y == YAxis::down)
+        repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    return cli::write_model_output(job, changes);
+}
+
 Result<void> TransferNormals::process(cli::Job& job) {
+    if (job.task.model_output) return make_model(job);
     auto made = make(job);
     if (!made && report_.is_given()) report_.add_failure(job, made.error());
     return made;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/node_transform.h"
+#include "mesh/uv_transform.h"
 #include "mesh/vectors.h"
 #include "threads/no_throw.h"
 
@@ -91,6 +92,17 @@ Result<MeshPart> in_scene(MeshPart part, const MeshNode& node) {
     return no_throw([&]() -> Result<MeshPart> {
         if (auto sound = check_part(part); !sound) return sound.error();
         if (const auto done = transform(part, node); !done) return done.error();
+        return std::move(part);
+    });
+}
+
+Result<MeshPart> with_moved_uvs(MeshPart part, int uv_set, const UvTransform& transform) {
+    return no_throw([&]() -> Result<MeshPart> {
+        const auto set = static_cast<std::size_t>(uv_set);
+        if (uv_set < 0 || set >= part.uvs.size())
+            return Error{ErrorCode::bad_option, {}, "the part has no such set of UVs"};
+        move_uvs(part.uvs[set], transform, part.v_axis);
+        if (auto sound = check_part(part); !sound) return sound.error();
         return std::move(part);
     });
 }

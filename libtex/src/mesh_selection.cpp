@@ -13,7 +13,6 @@
 #include "mesh/part_names.h"
 #include "mesh/shown_parts.h"
 #include "mesh/uv_tiles.h"
-#include "mesh/uv_transform.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
 
@@ -203,14 +202,6 @@ Result<std::vector<Float4>> tangents_of(const MeshPart& part, const Choice& choi
                          execution);
 }
 
-// The part with the chosen UVs where the material puts them.
-Result<MeshPart> with_moved_uvs(const MeshPart& part, const Choice& choice) {
-    MeshPart moved = part;
-    move_uvs(moved.uvs[static_cast<std::size_t>(choice.uv_set)], choice.transform, part.v_axis);
-    if (const auto sound = check_part(moved); !sound) return sound.error();
-    return moved;
-}
-
 // The part as the node places it. A node may mirror a part, so each corner becomes a vertex with its own tangent.
 Result<MeshPart> placed(const MeshPart& part, std::vector<Float4> tangents, const MeshNode& node) {
     MeshPart corners;
@@ -269,7 +260,7 @@ Result<SelectedPart> joined_parts(const Mesh& mesh, const Choice& choice, const 
     for (const MeshPart* stored : choice.parts) {
         std::optional<MeshPart> moved;
         if (joined.has_transform) {
-            auto done = with_moved_uvs(*stored, choice);
+            auto done = with_moved_uvs(*stored, choice.uv_set, choice.transform);
             if (!done) return done.error();
             moved = std::move(*done);
         }

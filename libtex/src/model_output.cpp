@@ -57,7 +57,7 @@ Result<void> check_type(const std::string& input, const std::string& output, std
 Result<void> list_files(const std::string& input, const std::string& output, Prepared& prepared) {
     std::vector<BesideModel> beside_output;
     for (BesideModel& file : prepared.made.beside) {
-        const std::string from = beside(input, file.from);
+        const std::string from = file.from.empty() ? std::string() : beside(input, file.from);
         if (!file.is_changed) {
             if (!FileStatus::of(from)) {
                 prepared.files.missing.push_back(file.from);
@@ -75,6 +75,7 @@ Result<void> list_files(const std::string& input, const std::string& output, Pre
     prepared.made.beside = std::move(beside_output);
     prepared.files.files.push_back({output, {}, true});
     prepared.files.outside = prepared.made.outside;
+    prepared.files.compressed = prepared.made.compressed;
     return {};
 }
 
@@ -204,6 +205,9 @@ Result<ModelFiles> write_model(const std::string& input, const std::string& outp
     return no_throw([&]() -> Result<ModelFiles> {
         for (const ModelPicture& picture : changes.pictures) {
             if (picture.bytes.empty()) return Error{ErrorCode::bad_option, output, "a picture has no bytes"};
+        }
+        for (const ModelTangents& part : changes.tangents) {
+            if (part.tangents.empty()) return Error{ErrorCode::bad_option, output, "a part has no tangents"};
         }
         auto prepared = prepare(input, output, changes, options);
         if (!prepared) return prepared.error();

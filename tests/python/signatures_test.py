@@ -54,6 +54,7 @@ NOT_BOUND = {
     "texel_size": "HeightField.ground, which bake() applies",
     "to_string": "layouts are words",
     "validate": "check() validates its arguments",
+    "with_moved_uvs": "select_part() moves UVs as materials do",
     "write_model": "run('pack-normals', 'scene.glb', '-o', 'fixed.glb') writes models",
 }
 

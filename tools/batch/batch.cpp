@@ -319,8 +319,9 @@ Result<std::vector<Task>> Converter::plan() const {
     if (own.models) {
         MeshReadOptions how;
         how.reader = running.read;
-        if (own.writes_models && writes_models(files)) return plan_models(*inputs, files, output, own, command, how);
-        *inputs = with_maps_of_models(std::move(*inputs), *own.models, how);
+        if (own.writes_models && writes_models(files))
+            return plan_models(std::move(*inputs), files, output, own, command, how);
+        if (!own.lods) *inputs = with_maps_of_models(std::move(*inputs), *own.models, how);
     }
     return plan_outputs(std::move(*inputs), files, output, own);
 }

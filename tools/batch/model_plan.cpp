@@ -20,14 +20,16 @@ namespace tex::cli {
 namespace {
 
 // The options for the pictures in models. Throws UsageError.
-OutputOptions picture_options(const FileOptions& files, const OutputOptions& output, const Command& command) {
+OutputOptions picture_options(const FileOptions& files, const OutputOptions& output, const OutputRules& rules,
+                              const Command& command) {
     if (output.engines.size() > 1) throw UsageError("--for", "a model is for one engine");
     OutputOptions own = output.of(output.engines_or_none().front());
     const std::string& name = files.output.empty() ? files.name : files.output;
     const auto refuse = [&](std::string_view what) { throw UsageError(fmt::format("{}: {}", printable(name), what)); };
     const Container container = own.made_container().value_or(Container::png);
-    if (container != Container::png && container != Container::jpeg) {
-        refuse(fmt::format("the pictures of a model are PNG or JPEG, not {}", name_of(kContainerNames, container)));
+    if (container != Container::png && container != Container::jpeg && container != Container::webp) {
+        refuse(
+            fmt::format("the pictures of a model are PNG, JPEG or WebP, not {}", name_of(kContainerNames, container)));
     }
     own.container = container;
     std::ignore = own.container_for("picture" + extension_of(container), container);
@@ -37,7 +39,9 @@ OutputOptions picture_options(const FileOptions& files, const OutputOptions& out
                            name_of(kEncodingNames, *own.format)));
     }
     if (own.format) OutputOptions::check_holds(name, container, *own.format);
-    const auto idle = command.given_of({"--blue", "--alpha", "--length", "--layout", "--dds-header", "--dds-mark"});
+    std::vector<std::string> names = {"--blue", "--alpha", "--length", "--layout", "--dds-header", "--dds-mark"};
+    names.insert(names.end(), rules.not_for_models.begin(), rules.not_for_models.end());
+    const auto idle = command.given_of(names);
     if (!idle.empty()) refuse(idle.front() + " is for one map, and not for models");
     return own;
 }
@@ -62,9 +66,14 @@ void leave_out_shared(std::vector<Task>& tasks, const std::vector<std::vector<Mo
 
 bool writes_models(const FileOptions& files) { return names_model(files.output) || names_model(files.name); }
 
-std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOptions& files, const OutputOptions& output,
+std::vector<Task> plan_models(std::vector<Input> inputs, const FileOptions& files, const OutputOptions& output,
                               const OutputRules& rules, const Command& command, const MeshReadOptions& options) {
-    const OutputOptions own = picture_options(files, output, command);
+    const OutputOptions own = picture_options(files, output, rules, command);
+    std::vector<std::string> joined;
+    if (rules.joins && !files.output.empty() && !inputs.empty()) {
+        for (std::size_t k = 1; k < inputs.size(); ++k) joined.push_back(inputs[k].name);
+        inputs.resize(1);
+    }
     if (!files.output.empty() && inputs.size() > 1)
         throw UsageError(fmt::format("-o takes one input, {} are given; --out-dir takes many", inputs.size()));
     std::vector<Task> tasks;
@@ -73,7 +82,11 @@ std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOption
         Task task{input.name, output_for(input, files), *own.container};
         task.engine = own.engine;
         task.shared = rules.shared;
-        all_files.push_back(set_model_output(task, *rules.models, rules.keeps_maps, options));
+        task.joined = joined;
+        task.joined_models.resize(joined.size());
+        if (rules.amend) rules.amend(task);
+        all_files.push_back(rules.lods ? set_lod_output(task, *rules.models, *rules.lods, options)
+                                       : set_model_output(task, *rules.models, rules.keeps_maps, options));
         tasks.push_back(std::move(task));
     }
     leave_out_shared(tasks, all_files);

@@ -14,7 +14,7 @@ namespace tex::cli {
 [[nodiscard]] bool writes_models(const FileOptions& files);
 
 // plan_outputs(), where outputs are models. Throws UsageError also for options that mean nothing for models.
-[[nodiscard]] std::vector<Task> plan_models(const std::vector<Input>& inputs, const FileOptions& files,
+[[nodiscard]] std::vector<Task> plan_models(std::vector<Input> inputs, const FileOptions& files,
                                             const OutputOptions& output, const OutputRules& rules,
                                             const Command& command, const MeshReadOptions& options);
 

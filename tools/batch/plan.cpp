@@ -125,6 +125,15 @@ std::vector<Input> with_tiles(std::vector<Input> inputs, const FileOptions& file
     return all;
 }
 
+// An input for each material.
+std::vector<Input> with_materials(const std::vector<Input>& inputs, const OutputRules& rules) {
+    std::vector<Input> all;
+    for (const Input& input : inputs) {
+        for (Input& material : rules.materials(input)) all.push_back(std::move(material));
+    }
+    return all;
+}
+
 // Throws UsageError if the outputs for several engines cannot be made in one run.
 void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std::size_t engines) {
     if (engines < 2) return;
@@ -154,11 +163,13 @@ Task complete(Task task, const OutputOptions& output, const OutputRules& rules) 
 std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files, const OutputOptions& output,
                                const OutputRules& rules) {
     std::vector<Input> joined;
-    if (rules.joins && !files.output.empty() && !inputs.empty()) {
+    if (rules.joins && (!files.output.empty() || rules.materials) && !inputs.empty()) {
         joined.assign(inputs.begin() + 1, inputs.end());
         inputs.resize(1);
     }
-    if (rules.tiles) {
+    if (rules.materials) {
+        inputs = with_materials(inputs, rules);
+    } else if (rules.tiles) {
         inputs = with_tiles(std::move(inputs), files, rules);
     } else {
         check_tiles(inputs, files);
@@ -176,6 +187,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
             Task planned{input.name, name};
             planned.tile = input.tile;
             planned.pattern = input.pattern;
+            planned.model = input.model;
             Task task = complete(std::move(planned), own, rules);
             set_model(task, input);
             for (const Input& other : joined) join(task, other);

@@ -29,6 +29,11 @@ struct OutputRules {
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
     bool writes_models = false;              // such inputs can become models again: outputs that are called so
     bool keeps_maps = false;                 // of such models, some maps may stay as they are
+    // Those outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
+    std::optional<std::optional<TangentSource>> lods = {};
+    std::vector<std::string> not_for_models = {};  // options without a meaning for such outputs
+    // Inputs are meshes, and each of their materials gets an output: this returns them as inputs. May be empty.
+    std::function<std::vector<Input>(const Input& input)> materials = {};
     // Inputs are meshes, and outputs with <UDIM> in their names are made for each of the tiles that this returns. None:
     // the mesh has none, or cannot be read, of which its job complains. Empty: the inputs' names say the tiles.
     std::function<std::vector<int>(const std::string& input)> tiles = {};

@@ -118,7 +118,10 @@ Result<void> PackCommand::process_model(Job& job) {
         repeated_.add(job, job.task.input, "JPEG is lossy, so that normals change; PNG keeps every code");
     if (output.of(job.task.engine).y == YAxis::down)
         repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
-    return write_model_of(job, changes);
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    if (auto written = write_model_output(job, changes); !written) return written;
+    std::ignore = job.reached(1.0);
+    return {};
 }
 
 }  // namespace tex::cli

@@ -176,6 +176,7 @@ std::string FileOptions::further(const std::string& option, const std::string& p
     NameFields fields = name_fields(task.further ? task.further->input : task.input);
     fields.format = format;
     if (task.engine != nullptr) fields.engine = task.engine->name;
+    if (task.model) fields.material = task.model->field;
     return task.further ? task.further->path_for(option, NamePattern(pattern).expand(fields)) : place(pattern, fields);
 }
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
+#include <tex/blend.h>
 #include <tex/file.h>
 #include <tex/mesh.h>
 
@@ -43,13 +45,14 @@ Result<NormalMap> read_map(Job& job, const std::string& file, std::optional<YAxi
     return std::move(source->chain.levels.front());
 }
 
-Result<std::vector<Float4>> tangents_of(const MeshPart& part, const Execution& execution) {
-    return part.tangents.empty() ? make_tangents(part, TangentMethod::mikktspace, 0, execution) : stored_tangents(part);
+Result<std::vector<Float4>> tangents_of(const MeshPart& part, int uv_set, const Execution& execution) {
+    return part.tangents.empty() ? make_tangents(part, TangentMethod::mikktspace, uv_set, execution)
+                                 : stored_tangents(part);
 }
 
 }  // namespace
 
-void HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files, const std::string& name,
+Row& HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files, const std::string& name,
                                   std::string help) {
     Row& row = command.option(name, "[NAME=]FILE", std::move(help), [&files](const std::string& text) {
         const auto [before, after] = cut(text, '=');
@@ -66,20 +69,34 @@ void HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files
     });
     row.completes = Completes::files;
     row.repeatable = true;
+    return row;
 }
 
-void HighDetailOptions::add(Command& command) {
+void HighDetailOptions::add(Command& command, std::function<bool()> implies_own) {
+    implies_own_ = std::move(implies_own);
     command.group("Pictures on the high mesh");
-    add_files(command, normals_, "--high-normals",
-              "its own normal map, of all parts or of those with this material; may be repeated");
+    Row& row =
+        add_files(command, normals_, "--high-normals",
+                  "its own normal map, of all parts or of those with this material; may be repeated; or the word");
+    row.words = {{"own", "those of its materials (glTF); the default if the output is a model"}, {"off", "none"}};
+    row.preset = "off; of a model, own";
+    row.take = [this, take = row.take](const std::string& text) {
+        if (text == "own" || text == "off")
+            own_ = text == "own";
+        else
+            take(text);
+    };
     add_files(command, colors_, "--high-color",
               "a texture for --color-out, of all parts or of those with this material; may be repeated");
     command.choice(y_, "--high-y", "Y", kYAxisNames, "where green of --high-normals points").preset =
         "as the file says, else up";
     command.choice(decoder_, "--high-decoder", "D", kDecoderNames, "the engine that --high-normals are made for");
-    command.check([&command] {
+    command.check([this, &command] {
         const auto idle = command.given_of({"--high-y", "--high-decoder"});
-        if (!idle.empty() && !command.given("--high-normals")) throw UsageError(idle.front() + " needs --high-normals");
+        if (!idle.empty() && normals_.empty() && !takes_own()) throw UsageError(idle.front() + " needs --high-normals");
+        const auto is_for_all = [](const Assigned& file) { return file.material.empty(); };
+        if (own_ && std::any_of(normals_.begin(), normals_.end(), is_for_all))
+            throw UsageError("--high-normals", "a file for all materials, and own or off, contradict each other");
         if (command.given("--high-color") != command.given("--color-out"))
             throw UsageError(command.given("--high-color") ? "--high-color needs --color-out"
                                                            : "--color-out needs --high-color");
@@ -121,8 +138,11 @@ Result<void> HighDetailOptions::read_normals_of(Job& job, const HighParts& high,
     std::map<const Assigned*, const NormalMap*> maps;
     for (std::size_t k = 0; k < high.parts.size(); ++k) {
         const Assigned* const file = find(normals_, high.materials[k]);
-        if (file == nullptr) continue;
         const MeshPart& part = high.parts[k];
+        if (file == nullptr && high.maps[k] != nullptr) {
+            if (auto done = add_own(job, high, k, pictures); !done) return done;
+        }
+        if (file == nullptr) continue;
         if (part.uvs.empty()) return lacks(high, k, "UVs", "--high-normals");
         if (part.normals.empty()) return lacks(high, k, "normals", "--high-normals");
         if (maps[file] == nullptr) {
@@ -130,7 +150,7 @@ Result<void> HighDetailOptions::read_normals_of(Job& job, const HighParts& high,
             if (!map) return map.error();
             maps[file] = &pictures.normals.emplace_back(std::move(*map));
         }
-        auto tangents = tangents_of(part, {job.threads(), {}});
+        auto tangents = tangents_of(part, 0, {job.threads(), {}});
         if (!tangents) return tangents.error();
         HighDetail& detail = pictures.details[k];
         detail.normals = maps[file];
@@ -138,6 +158,66 @@ Result<void> HighDetailOptions::read_normals_of(Job& job, const HighParts& high,
         detail.decoder = decoder_;
     }
     return {};
+}
+
+// Without UVs or normals, nobody sees the map.
+Result<void> HighDetailOptions::add_own(Job& job, const HighParts& high, std::size_t k, HighPictures& pictures) const {
+    const ModelInput& map = *high.maps[k];
+    const MeshPart& part = high.parts[k];
+    const int uv_set = map.map->uv_set;
+    if (static_cast<std::size_t>(uv_set) >= part.uvs.size() || part.normals.empty()) return {};
+    const auto normals = own_map(job, map, pictures);
+    if (!normals) return normals.error();
+    auto tangents = tangents_of(part, uv_set, {job.threads(), {}});
+    if (!tangents) return tangents.error().of(map.name());
+    HighDetail& detail = pictures.details[k];
+    detail.normals = *normals;
+    detail.tangents = &pictures.tangents.emplace_back(std::move(*tangents));
+    detail.decoder = decoder_;
+    detail.uv_set = uv_set;
+    return {};
+}
+
+// The map of a material, as engines draw it. glTF has no other direction of green than up, and yet there are such maps.
+Result<const NormalMap*> HighDetailOptions::own_map(Job& job, const ModelInput& map, HighPictures& pictures) const {
+    const NormalMap*& known = pictures.own[&map];
+    if (known != nullptr) return known;
+    SourceOptions options;
+    options.read = job.read_options;
+    options.unpack.y_axis = y_;
+    options.measure_y = !y_;
+    options.y_otherwise = YAxis::up;
+    if (auto opened = map.open(options.read); !opened) return opened.error();
+    auto source = read_normals(map.path, options, true, {job.threads(), {}});
+    if (!source) return source.error();
+    if (source->info.y_axis == YAxis::down && !y_)
+        job.warn("green points down in this normal map, as its texels show, and is read so; --high-y up reads it as up",
+                 map.name());
+    NormalMap& own = pictures.normals.emplace_back(std::move(source->chain.levels.front()));
+    const Extent extent = own.extent(), largest = pictures.largest_own;
+    pictures.largest_own = {std::max(extent.width, largest.width), std::max(extent.height, largest.height)};
+    if (map.map->scale != 1.0) {
+        auto scaled = scale(std::move(own), static_cast<float>(map.map->scale), ScaleMode::slope, {job.threads(), {}});
+        if (!scaled) return scaled.error().of(map.name());
+        own = std::move(*scaled);
+    }
+    return known = &own;
+}
+
+// Says which maps everybody sees and rays do not.
+void HighDetailOptions::note_unused(Job& job, const HighParts& high, const HighPictures& pictures) {
+    std::vector<std::string> materials;
+    bool in_model = false;
+    for (std::size_t k = 0; k < high.parts.size(); ++k) {
+        if (!high.has_maps[k] || (!pictures.details.empty() && pictures.details[k].normals != nullptr)) continue;
+        materials.push_back(high.materials[k]);
+        in_model = in_model || is_model(high.names[static_cast<std::size_t>(high.files[k])]);
+    }
+    if (materials.empty()) return;
+    job.warn(
+        fmt::format("the high mesh has normal maps of its own, which are not used (material {}); --high-normals "
+                    "{} uses them",
+                    quoted_list(materials), in_model ? "own" : "FILE"));
 }
 
 Result<void> HighDetailOptions::read_colors_of(Job& job, const HighParts& high, HighPictures& pictures) const {
@@ -161,10 +241,13 @@ Result<void> HighDetailOptions::read_colors_of(Job& job, const HighParts& high, 
 
 Result<HighPictures> HighDetailOptions::read(Job& job, const HighParts& high) const {
     HighPictures pictures;
-    if (!is_given()) return pictures;
-    pictures.details.resize(high.parts.size());
-    if (auto done = read_normals_of(job, high, pictures); !done) return done.error();
-    if (auto done = read_colors_of(job, high, pictures); !done) return done.error();
+    const auto is_own = [](const std::shared_ptr<const ModelInput>& map) { return map != nullptr; };
+    if (is_given() || std::any_of(high.maps.begin(), high.maps.end(), is_own)) {
+        pictures.details.resize(high.parts.size());
+        if (auto done = read_normals_of(job, high, pictures); !done) return done.error();
+        if (auto done = read_colors_of(job, high, pictures); !done) return done.error();
+    }
+    if (own_.value_or(true)) note_unused(job, high, pictures);  // off says that they are known
     return pictures;
 }
 

@@ -4,7 +4,9 @@
 
 #pragma once
 
+#include <functional>
 #include <list>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,16 +24,21 @@ struct HighPictures {
     std::list<NormalMap> normals;
     std::list<Image> colors;
     std::list<std::vector<Float4>> tangents;
+    std::map<const ModelInput*, const NormalMap*> own;
+    Extent largest_own{0, 0};         // of the high meshes' own maps
     std::vector<HighDetail> details;  // of the parts, which refer to the lists
 };
 
 class HighDetailOptions {
 public:
-    void add(Command& command);
+    // `implies_own`: whether own maps count without being named.
+    void add(Command& command, std::function<bool()> implies_own);
 
     [[nodiscard]] bool has_colors() const { return !colors_.empty(); }
     // Whether parts must keep their UVs.
     [[nodiscard]] bool is_given() const { return !colors_.empty() || !normals_.empty(); }
+    // Whether the high meshes' own normal maps count.
+    [[nodiscard]] bool takes_own() const { return own_.value_or(implies_own_()); }
 
     // Adds the files to the task.
     void amend(Task& task) const;
@@ -46,14 +53,20 @@ private:
         std::string pattern;
     };
 
-    static void add_files(Command& command, std::vector<Assigned>& files, const std::string& name, std::string help);
+    static Row& add_files(Command& command, std::vector<Assigned>& files, const std::string& name, std::string help);
     [[nodiscard]] static const Assigned* find(const std::vector<Assigned>& files, const std::string& material);
     [[nodiscard]] static Result<void> check(const std::vector<Assigned>& files, const HighParts& high,
                                             const std::string& option);
     [[nodiscard]] Result<void> read_normals_of(Job& job, const HighParts& high, HighPictures& pictures) const;
     [[nodiscard]] Result<void> read_colors_of(Job& job, const HighParts& high, HighPictures& pictures) const;
 
+    [[nodiscard]] Result<void> add_own(Job& job, const HighParts& high, std::size_t k, HighPictures& pictures) const;
+    static void note_unused(Job& job, const HighParts& high, const HighPictures& pictures);
+    [[nodiscard]] Result<const NormalMap*> own_map(Job& job, const ModelInput& map, HighPictures& pictures) const;
+
     std::vector<Assigned> normals_, colors_;
+    std::optional<bool> own_;
+    std::function<bool()> implies_own_;
     std::optional<YAxis> y_;
     Decoder decoder_ = Decoder::gltf;
 };

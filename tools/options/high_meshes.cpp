@@ -71,7 +71,8 @@ void HighMeshes::add(Command& command) {
     row.completes = Completes::files;
     row.repeatable = true;
     row.preset = "the inputs after the first one";
-    command.choice(match_, "--match", "M", kMatchNames, "which parts of both meshes belong together");
+    command.choice(match_, "--match", "M", kMatchNames, "which parts of both meshes belong together").preset =
+        "all; material, if each material gets a map";
     command
         .option("--high-scale", "S", "what the high meshes are multiplied by, if their unit is another one",
                 [this](const std::string& text) { units_.scale = parse_double(text, kPositive); })
@@ -111,7 +112,7 @@ void HighMeshes::amend(Task& task) const {
 
 Result<std::shared_ptr<const HighParts>> HighMeshes::read(Job& job, const Wanted& wanted) const {
     const std::vector<std::string> names = names_of(job.task);
-    const bool shares = job.task.is_tile_of_mesh();
+    const bool shares = job.task.is_tile_of_mesh() || job.task.model || job.task.model_output;
     const std::unique_lock lock = shares ? std::unique_lock(mutex_) : std::unique_lock<std::mutex>();
     if (shares && last_ && last_->names == names && are_current(last_files_)) {
         for (const FileWarning& remark : last_->remarks) job.remark(remark.message, remark.file);
@@ -141,8 +142,12 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
         for (const std::string& remark : mesh->remarks) high.remarks.push_back({name, remark});
+        std::map<int, std::shared_ptr<const ModelInput>> maps;
+        if (wanted.maps && is_model(name)) {
+            if (auto done = read_maps(name, how, *mesh, maps); !done) return done.error().of(name);
+        }
         for (MeshPart& part : mesh->parts) {
-            if (wanted.uvs) continue;
+            if (wanted.uvs || maps.contains(part.material)) continue;
             part.uvs.clear();
             part.tangents.clear();
         }
@@ -154,6 +159,9 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         for (MeshPart& part : placed->parts) {
             const bool has_material = part.material >= 0 && static_cast<std::size_t>(part.material) < materials.size();
             high.materials.push_back(has_material ? materials[static_cast<std::size_t>(part.material)].name : "");
+            high.has_maps.push_back(has_material && materials[static_cast<std::size_t>(part.material)].has_normal_map);
+            const auto map = maps.find(part.material);
+            high.maps.push_back(map == maps.end() ? nullptr : map->second);
             high.files.push_back(file);
             high.parts.push_back(std::move(part));
         }
@@ -163,20 +171,56 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
     return high;
 }
 
+// The maps by material; UVs of parts are moved as they say.
+Result<void> HighMeshes::read_maps(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
+                                   std::map<int, std::shared_ptr<const ModelInput>>& maps) const {
+    for (const Input& input : with_maps_of_models({{name}}, "", options)) {
+        if (!input.model) continue;
+        if (input.model->error) return *input.model->error;
+        if (input.model->map && input.model->map->slot == NormalSlot::normal)
+            maps[input.model->map->material] = input.model;
+    }
+    for (MeshPart& part : mesh.parts) {
+        const auto map = maps.find(part.material);
+        if (map == maps.end()) continue;
+        const ModelMap& of = *map->second->map;
+        if (static_cast<std::size_t>(of.uv_set) >= part.uvs.size() || of.uv_transform == UvTransform{}) continue;
+        auto moved = with_moved_uvs(std::move(part), of.uv_set, of.uv_transform);
+        if (!moved) return moved.error();
+        part = std::move(*moved);
+    }
+    return {};
+}
+
 Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighParts& high, TransferInputs& inputs) const {
-    if (match_ == Match::all) return {};
+    const Match match = match_.value_or(job.task.model ? Match::material : Match::all);
+    if (match == Match::all) return {};
     std::vector<std::string> low_names, high_names;
     for (const SelectedPiece& piece : low.pieces)
-        low_names.push_back(match_ == Match::name ? piece.name : piece.material);
+        low_names.push_back(match == Match::name ? piece.name : piece.material);
     for (std::size_t k = 0; k < high.standing(); ++k)
-        high_names.push_back(match_ == Match::name ? high.name_of(k) : high.materials[high.part_of(k)]);
+        high_names.push_back(match == Match::name ? high.name_of(k) : high.materials[high.part_of(k)]);
     const MatchedNames matched = match_names(low_names, high_names);
     job.report["match"] = {{"lone_low", matched.lone_low}, {"lone_high", matched.lone_high}};
-    const std::string what = match_ == Match::name ? "part" : "material";
+    const std::string what = match == Match::name ? "part" : "material";
     const auto belongs = [&](int number) {
         return std::find(matched.high.begin(), matched.high.end(), number) != matched.high.end();
     };
-    if (std::none_of(matched.low.begin(), matched.low.end(), belongs)) {
+    const bool has_partner = std::any_of(matched.low.begin(), matched.low.end(), belongs);
+    if (!has_partner && !match_) {
+        job.report.erase("match");
+        // Without names, there is nothing to say about a mesh of one material.
+        const bool is_plain = std::all_of(high_names.begin(), high_names.end(),
+                                          [&](const std::string& name) { return name == high_names.front(); });
+        if (!is_plain) {
+            job.warn(
+                fmt::format("the high mesh has no material of this name, and so rays meet all of its parts; it "
+                            "has {}",
+                            quoted_list(high_names)));
+        }
+        return {};
+    }
+    if (!has_partner) {
         return Error{ErrorCode::bad_option, job.task.input,
                      fmt::format("no {} has a partner: the low mesh has {}, the high one {}", what,
                                  quoted_list(low_names), quoted_list(high_names))};
@@ -184,8 +228,8 @@ Result<void> HighMeshes::match(Job& job, const SelectedPart& low, const HighPart
     if (!matched.lone_low.empty())
         job.warn(fmt::format("no {} of the high mesh belongs to {}: their texels are missed", what,
                              quoted_list(matched.lone_low)));
-    // Each tile has its own parts.
-    if (!matched.lone_high.empty() && !job.task.is_tile_of_mesh())
+    // Each tile and each material has its own parts.
+    if (!matched.lone_high.empty() && !job.task.is_tile_of_mesh() && !job.task.model)
         job.warn(fmt::format("no {} of the low mesh belongs to {} of the high one: no ray meets them", what,
                              quoted_list(matched.lone_high)));
     inputs.high_groups = matched.high;
@@ -209,7 +253,7 @@ Error HighMeshes::with_order(const Error& error) {
 void HighMeshes::compare(Job& job, const MeshPart& low, const HighParts& high) const {
     const std::size_t triangles = high.triangles();
     job.report["triangles"] = {{"low", low.triangles()}, {"high", triangles}};
-    const bool is_known = !units_.is_plain() || job.task.is_tile_of_mesh();
+    const bool is_known = !units_.is_plain() || job.task.is_tile_of_mesh() || job.task.model;
     const auto units = is_known ? std::nullopt : fitting_units(low, high.parts, high.places);
     if (units) {
         job.warn(

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,10 +36,13 @@ inline constexpr Named<Match> kMatchNames[] = {
 struct HighParts {
     std::vector<MeshPart> parts;
     std::vector<std::string> materials;  // their names; may be empty
-    std::vector<int> files;              // the number of the file
-    std::vector<PartPlace> places;       // where they stand; empty: where they are stored (TransferInputs::high_places)
-    std::vector<std::string> names;      // of the files
-    std::vector<FileWarning> remarks;    // what may matter about them
+    std::vector<bool> has_maps;          // whether the material of a part has a normal map
+    // That map, if the parts were read for it, and it is in a model: their UVs lie where it puts them. Else null.
+    std::vector<std::shared_ptr<const ModelInput>> maps;
+    std::vector<int> files;            // the number of the file
+    std::vector<PartPlace> places;     // where they stand; empty: where they are stored (TransferInputs::high_places)
+    std::vector<std::string> names;    // of the files
+    std::vector<FileWarning> remarks;  // what may matter about them
 
     // What rays tell apart: the places, or else the parts.
     [[nodiscard]] std::size_t standing() const { return places.empty() ? parts.size() : places.size(); }
@@ -68,18 +73,22 @@ public:
 
     // Adds the files of --high, and what holds buffers of all meshes, to the task.
     void amend(Task& task) const;
+    // The high meshes of a task.
+    [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
 
     // What is read of the meshes besides positions and normals.
     struct Wanted {
         bool uvs = false;  // and tangents
         bool colors = false;
+        bool maps = false;  // of the materials, in models
     };
 
     // Reads the meshes of a job, as the nodes of their scenes place them. Jobs for the tiles of a low mesh share them.
     // Any thread may call this.
     [[nodiscard]] Result<std::shared_ptr<const HighParts>> read(Job& job, const Wanted& wanted) const;
 
-    // Numbers the parts as --match says, and reports those without partner.
+    // Numbers the parts as --match says, and reports those without partner. If each material of the low mesh has its
+    // own map, the default is `material`, and one without partner gets all parts.
     [[nodiscard]] Result<void> match(Job& job, const SelectedPart& low, const HighParts& high,
                                      TransferInputs& inputs) const;
 
@@ -91,12 +100,13 @@ public:
 private:
     // An error of places_in_scene(), with the remedy if there are too many copies.
     [[nodiscard]] Error with_limit(const Error& error) const;
-    [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
+    [[nodiscard]] Result<void> read_maps(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
+                                         std::map<int, std::shared_ptr<const ModelInput>>& maps) const;
     [[nodiscard]] Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
                                          const Wanted& wanted) const;
 
     std::vector<std::string> patterns_;
-    Match match_ = Match::all;
+    std::optional<Match> match_;
     MeshUnits units_;
     std::int64_t most_ = kMaxCopied;
     mutable std::mutex mutex_;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -62,10 +61,11 @@ void RayOptions::add(Command& command) {
     command
         .option("--extent", "N|WxH", "the width and height of the map in texels",
                 [this](const std::string& text) {
-                    std::tie(extent_.width, extent_.height) = parse_pair_of_sides(text, kMaxExtent / kMaxSubsamples);
+                    const auto [width, height] = parse_pair_of_sides(text, kMaxExtent / kMaxSubsamples);
+                    extent_ = Extent{width, height};
                 })
         .often(1, "the width and height of the map in texels")
-        .preset = fmt::format("{}", extent_.width);
+        .preset = fmt::format("{}; of a model, that of the old map", kExtent.width);
     command
         .option("--subsamples", "N", "rays of a texel: N by N",
                 [this](const std::string& text) {
@@ -79,7 +79,8 @@ void RayOptions::add(Command& command) {
         .often(2, "how far rays reach out of the low mesh: 2% or auto");
     add_reach(command, transfer_.back, "--back", "the same inside of the low mesh", "found from both meshes", "auto")
         .often(2, "the same inside of the low mesh");
-    command.choice(transfer_.hit, "--hit", "H", kHitChoiceNames, "which point counts if a ray meets several");
+    command.choice(hit_, "--hit", "H", kHitChoiceNames, "which point counts if a ray meets several").preset =
+        "outermost; of a model, nearest";
     command.flag(transfer_.backfaces, "--backfaces", "let triangles of the high mesh count that are seen from behind");
     command
         .option("--straight-angle", "DEG", "with --rays straight, edges between faces with a larger angle are hard",

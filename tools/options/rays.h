@@ -26,8 +26,15 @@ class RayOptions {
 public:
     void add(Command& command);
 
-    [[nodiscard]] Extent extent() const { return extent_; }
-    [[nodiscard]] const TransferOptions& transfer() const { return transfer_; }
+    // --extent, or the default, which may be another one.
+    [[nodiscard]] Extent extent(Extent preset = kExtent) const { return extent_.value_or(preset); }
+    [[nodiscard]] bool has_extent() const { return extent_.has_value(); }
+    // `hit` is the default of --hit.
+    [[nodiscard]] TransferOptions transfer(HitChoice hit = HitChoice::outermost) const {
+        TransferOptions options = transfer_;
+        options.hit = hit_.value_or(hit);
+        return options;
+    }
 
     // Reports what the rays found, with warnings about what they did not, and raises the exit code if more texels are
     // missed than --max-missed allows.
@@ -39,7 +46,10 @@ private:
     void add_coverage(Command& command);
     void judge_missed(Job& job, const TransferredMaps& maps, const std::string& remedy) const;
 
-    Extent extent_{2048, 2048};
+    static constexpr Extent kExtent{2048, 2048};
+
+    std::optional<Extent> extent_;
+    std::optional<HitChoice> hit_;
     TransferOptions transfer_;
     Overlap overlap_ = Overlap::first;
     std::optional<double> max_missed_;  // percent

@@ -276,7 +276,14 @@ MeshSelection TangentSpaceOptions::in_place(const Mesh& mesh, MeshSelection sele
 
 Result<MeshSpace> TangentSpaceOptions::of_low(const Task& task, const ReadOptions& options,
                                               const Execution& execution) const {
-    return read(task.input, tangents_, decoder_, tile_of_low(task), options, execution);
+    if (!task.model) return read(task.input, tangents_, decoder_, tile_of_low(task), options, execution);
+    const auto model = task.model->read(LastModel::Part::all, options);
+    if (!model) return model.error();
+    MeshSelection selection = task.model->selection(**model);
+    selection.tangents = tangents_;
+    auto selected = select_part((*model)->mesh, selection, execution);
+    if (!selected) return with_option(selected.error()).of(task.model->name());
+    return MeshSpace(std::make_shared<const SelectedPart>(std::move(*selected)), decoder_, task.model->name());
 }
 
 Result<MeshSpace> TangentSpaceOptions::charts(const ReadOptions& options, const Execution& execution) const {

@@ -115,6 +115,7 @@ public:
                                            const Execution& execution) const;
 
     // The space of an input that is a mesh: its triangles in the tile of --tile, of the task, or all.
+    // If the task is for a material of a model, those that have it.
     [[nodiscard]] Result<MeshSpace> of_low(const Task& task, const ReadOptions& read, const Execution& execution) const;
     // The tiles of such a mesh that outputs are made for: that of --tile, or those that have triangles.
     [[nodiscard]] std::vector<int> tiles_of_low(const std::string& file, const ReadOptions& read) const;

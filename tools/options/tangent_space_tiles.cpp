@@ -44,8 +44,9 @@ void TangentSpaceOptions::note(Job& job, const MeshSpace& mesh) const {
         for (std::string& remark : remarks_on_tiles(job)) remarks.push_back(std::move(remark));
     }
     const std::lock_guard lock(mutex_);
+    const std::string& file = job.task.model ? job.task.input : mesh.file();  // what it says is true of all materials
     for (const std::string& remark : remarks) {
-        if (noted_.insert(mesh.file() + '\n' + remark).second)
+        if (noted_.insert(file + '\n' + remark).second)
             job.warn(remark, mesh.file());
         else
             job.remark(remark, mesh.file());

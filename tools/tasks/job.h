@@ -70,6 +70,14 @@ public:
     }
     void wrote(std::string path) { outputs_.push_back(std::move(path)); }
 
+    // Takes over what a job for a part of this one has warned of and said.
+    void take(const Job& part) {
+        warnings_.insert(warnings_.end(), part.warnings_.begin(), part.warnings_.end());
+        remarks_.insert(remarks_.end(), part.remarks_.begin(), part.remarks_.end());
+        text_ += part.text_;
+        raise(part.code_);
+    }
+
     [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
     [[nodiscard]] const std::vector<FileWarning>& remarks() const { return remarks_; }
     [[nodiscard]] const std::vector<std::string>& outputs() const { return outputs_; }

@@ -26,17 +26,17 @@ std::string field_of(const Model& model, const ModelMap& map) {
 // Files may have many thousand materials, so that names are counted once.
 using Counts = std::map<std::string, int>;
 
-std::vector<std::string> fields_of(const Model& model) {
+std::vector<std::string> fields_of(const Model& model, const std::vector<ModelMap>& maps) {
     Counts counts;
     std::vector<std::string> fields;
-    for (const ModelMap& map : model.maps) {
+    for (const ModelMap& map : maps) {
         fields.push_back(field_of(model, map));
         ++counts[fields.back()];
     }
     std::vector<std::string> unique = fields;
     for (std::size_t k = 0; k < fields.size(); ++k) {
         if (counts[fields[k]] == 1) continue;
-        do unique[k] += "_" + std::to_string(model.maps[k].material);
+        do unique[k] += "_" + std::to_string(maps[k].material);
         while (counts.contains(unique[k]));
         counts[unique[k]] = 1;
     }
@@ -65,6 +65,19 @@ const ModelImage* image_of(const Model& model, const ModelMap& map) {
     return map.image < 0 ? nullptr : &model.images[static_cast<std::size_t>(map.image)];
 }
 
+// The number of the material with this name or number; nothing for all of them.
+Result<std::optional<int>> number_of_material(const Model& model, const std::string& material) {
+    if (material.empty()) return std::optional<int>();
+    Model numbered;
+    numbered.file = model.file;
+    numbered.mesh.materials = model.mesh.materials;
+    for (std::size_t m = 0; m < numbered.mesh.materials.size(); ++m)
+        numbered.maps.emplace_back().material = static_cast<int>(m);
+    const auto maps = maps_of(numbered, material);
+    if (!maps) return maps.error();
+    return std::optional<int>(maps->front().material);
+}
+
 std::vector<std::shared_ptr<const ModelInput>> maps_in(const std::string& file, const std::string& material,
                                                        const MeshReadOptions& options,
                                                        const std::shared_ptr<LastModel>& last) {
@@ -76,7 +89,7 @@ std::vector<std::shared_ptr<const ModelInput>> maps_in(const std::string& file, 
     const auto chosen = maps_of(*model, material);
     if (!chosen) return one({.file = file, .error = chosen.error()});
     if (chosen->empty()) return one({.file = file});
-    const std::vector<std::string> fields = fields_of(*model), buffers = buffers_of(file, options);
+    const std::vector<std::string> fields = fields_of(*model, model->maps), buffers = buffers_of(file, options);
     const Counts names = names_of_materials(*model);
     std::vector<std::shared_ptr<const ModelInput>> maps;
     for (std::size_t k = 0; k < fields.size(); ++k) {
@@ -117,7 +130,7 @@ Result<std::shared_ptr<const Model>> ModelInput::read(LastModel::Part part, cons
     const auto is_same = [&](const ModelMap& now) {
         return now.material == map->material && now.slot == map->slot && now.image == map->image;
     };
-    if (model && std::none_of((*model)->maps.begin(), (*model)->maps.end(), is_same))
+    if (model && map->image >= 0 && std::none_of((*model)->maps.begin(), (*model)->maps.end(), is_same))
         return Error{ErrorCode::io, file, "changed while it was read"};
     return model;
 }
@@ -140,6 +153,101 @@ void ModelInput::report(Json& report) const {
     report["image"] = image;
     report["uv_set"] = map->uv_set;
     report["scale"] = map->scale;
+}
+
+namespace {
+
+// Whether the map would be on triangles of the part.
+bool shows(const MeshPart& part, const ModelMap& map) {
+    return part.can_have(map.material) && static_cast<std::size_t>(map.uv_set) < part.uvs.size() &&
+           !part.normals.empty();
+}
+
+// A map is made for the UVs that its transform moves into the picture: quantised UVs need one. If it moves them out, so
+// that the old map repeats, and the UVs as they are lie in the picture, the new one has no transform.
+UvTransform placed(const Model& model, const ModelMap& map) {
+    if (map.uv_transform == UvTransform{}) return {};
+    const auto fit = [&](const UvTransform& transform) {
+        constexpr float kSlack = 1e-3f;
+        const auto is_inside = [](float x) { return x >= -kSlack && x <= 1.0f + kSlack; };
+        for (const MeshPart& part : model.mesh.parts) {
+            if (!shows(part, map)) continue;
+            const auto moved = with_moved_uvs(part, map.uv_set, transform);
+            if (!moved) return false;
+            for (const Float2& uv : moved->uvs[static_cast<std::size_t>(map.uv_set)])
+                if (!is_inside(uv.x) || !is_inside(uv.y)) return false;
+        }
+        return true;
+    };
+    return !fit(map.uv_transform) && fit({}) ? UvTransform{} : map.uv_transform;
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::string& file, const std::string& material,
+                                                                  const MeshReadOptions& options) {
+    const auto one = [&](Error error) {
+        return std::vector{std::make_shared<const ModelInput>(ModelInput{.file = file, .error = std::move(error)})};
+    };
+    const auto last = std::make_shared<LastModel>();
+    const auto model = last->read(file, LastModel::Part::all, options);
+    if (!model) return one(model.error());
+    const auto chosen = number_of_material(**model, material);
+    if (!chosen) return one(chosen.error());
+    std::vector<ModelMap> maps;
+    for (std::size_t m = 0; m < (*model)->mesh.materials.size(); ++m) {
+        if (*chosen && **chosen != static_cast<int>(m)) continue;
+        ModelMap map;
+        map.material = static_cast<int>(m);
+        map.uv_set = (*model)->mesh.materials[m].uv_set;
+        map.uv_transform = (*model)->mesh.materials[m].uv_transform;
+        for (const ModelMap& known : (*model)->maps)
+            if (known.material == map.material && known.slot == NormalSlot::normal) map = known;
+        const auto& parts = (*model)->mesh.parts;
+        if (std::none_of(parts.begin(), parts.end(), [&](const MeshPart& part) { return shows(part, map); })) continue;
+        map.uv_transform = placed(**model, map);
+        maps.push_back(map);
+    }
+    if (maps.empty()) {
+        return one({ErrorCode::bad_option, file,
+                    *chosen ? "no triangle with this material has UVs and normals"
+                            : "no material is on triangles with UVs and normals"});
+    }
+    const std::vector<std::string> fields = fields_of(**model, maps);
+    const std::vector<std::string> beside = files_beside_model(file, options);
+    const Counts names = names_of_materials(**model);
+    std::vector<std::shared_ptr<const ModelInput>> inputs;
+    for (std::size_t k = 0; k < maps.size(); ++k) {
+        ModelInput input{.file = file, .material = material_of(**model, maps[k], names), .field = fields[k]};
+        input.map = maps[k];
+        if (const ModelImage* const image = image_of(**model, maps[k]))
+            input.image = image->file.empty() ? image->name : image->file;
+        input.path = input.name();
+        input.beside = beside;
+        input.last = last;
+        inputs.push_back(std::make_shared<const ModelInput>(std::move(input)));
+    }
+    return inputs;
+}
+
+MeshSelection ModelInput::selection(const Model& model) const {
+    MeshSelection selection = selection_of(model, *map);
+    selection.uv_set.reset();  // that of the material, so that tangents of the file count
+    selection.in_scene = true;
+    return selection;
+}
+
+std::vector<const MeshPart*> ModelInput::parts_without(const Model& model,
+                                                       std::optional<TangentSource> tangents) const {
+    std::vector<const MeshPart*> parts;
+    bool have_all = true;
+    for (const MeshPart& part : model.mesh.parts) {
+        if (!shows(part, *map)) continue;
+        parts.push_back(&part);
+        have_all = have_all && !part.tangents.empty();
+    }
+    if (tangents.value_or(have_all ? TangentSource::file : TangentSource::mikktspace) == TangentSource::file) return {};
+    return parts;
 }
 
 std::vector<std::string> files_beside_model(const std::string& file, const MeshReadOptions& options) {

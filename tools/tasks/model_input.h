@@ -52,12 +52,24 @@ struct ModelInput {
     // Makes `options` read the image of the map as the file `path`. Precondition and errors: as read(); why the model
     // has no bytes for it.
     [[nodiscard]] Result<void> open(ReadOptions& options) const;
+    // The triangles that a new map of the material is made for, where the scene places them.
+    [[nodiscard]] MeshSelection selection(const Model& model) const;
+    // Those of them whose tangents are made, and not those of the file.
+    [[nodiscard]] std::vector<const MeshPart*> parts_without(const Model& model,
+                                                             std::optional<TangentSource> tangents) const;
     // What --json says about the map.
     void report(Json& report) const;
 };
 
 // The files that a model names: its buffers and images. None if the file is no model, or cannot be read as one.
 [[nodiscard]] std::vector<std::string> files_beside_model(const std::string& file, const MeshReadOptions& options);
+
+// The materials of a model that are on triangles with UVs and normals, all or the one that is named, each with the
+// normal map that it has or could get: without one, ModelMap::image is -1. The transform is that of a new map. If there
+// is none, the only element says why.
+[[nodiscard]] std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::string& file,
+                                                                                const std::string& material,
+                                                                                const MeshReadOptions& options);
 
 // The inputs, with each model replaced by its maps: all, or those of the material `material` if it is not empty. A
 // model without maps, or one that cannot be read, remains one input. Warnings and errors come from its job.

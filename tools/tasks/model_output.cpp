@@ -79,16 +79,22 @@ ModelChanges ModelOutput::changes(Container container) const {
     for (const auto& group : images) {
         ModelPicture& picture = all.pictures.emplace_back();
         picture.container = container;
-        for (const auto& map : group) picture.maps.push_back(*map->map);
+        picture.sets_slots = is_lod;
+        for (const auto& map : group) {
+            picture.maps.push_back(*map->map);
+            if (is_lod) picture.maps.back().scale = 1.0;
+        }
     }
+    all.tangents = tangents;
     return all;
 }
 
-std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
-                                        const MeshReadOptions& options) {
+namespace {
+
+std::vector<ModelFile> set_output(Task& task, Result<ModelOutput> made, bool may_keep,
+                                  const MeshReadOptions& options) {
     auto output = std::make_shared<ModelOutput>();
     task.model_output = output;
-    auto made = maps_to_write(task.input, material, options);
     std::optional<Result<ModelFiles>> files;
     if (made) files = model_files(task.input, task.output, made->changes(task.container), options);
     if (made && *files && may_keep) add_copies(**files, model_files(task.input, task.output, {}, options));
@@ -105,12 +111,69 @@ std::vector<ModelFile> set_model_output(Task& task, const std::string& material,
         if (!file.from.empty()) read.insert(file.from);
         if (file.path != task.output) task.more_outputs.push_back(file.path);
     }
-    task.own.assign(read.begin(), read.end());
+    task.own.insert(task.own.end(), read.begin(), read.end());
     return (*files)->files;
 }
 
-Result<void> write_model_of(Job& job, const ModelChanges& changes) {
-    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+Result<ModelOutput> lod_of(const std::string& input, const std::string& material, std::optional<TangentSource> tangents,
+                           const MeshReadOptions& options) {
+    ModelOutput output;
+    output.is_lod = true;
+    for (const auto& map : materials_of_model(input, material, options)) {
+        if (map->error) return *map->error;
+        output.images.push_back({map});
+    }
+    const auto model = output.images.front().front()->read(LastModel::Part::all, options.reader);
+    if (!model) return model.error();
+    std::set<std::pair<int, int>> known;
+    for (const auto& group : output.images) {
+        for (const MeshPart* const part : group.front()->parts_without(**model, tangents)) {
+            if (known.emplace(part->mesh, part->primitive).second)
+                output.tangents.push_back({part->mesh, part->primitive, {}});
+        }
+    }
+    return output;
+}
+
+}  // namespace
+
+std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
+                                        const MeshReadOptions& options) {
+    return set_output(task, maps_to_write(task.input, material, options), may_keep, options);
+}
+
+std::vector<ModelFile> set_lod_output(Task& task, const std::string& material, std::optional<TangentSource> tangents,
+                                      const MeshReadOptions& options) {
+    return set_output(task, lod_of(task.input, material, tangents, options), false, options);
+}
+
+Result<std::vector<ModelTangents>> tangents_for(const Job& job, const ModelChanges& changes,
+                                                std::optional<TangentSource> tangents) {
+    const TangentMethod method =
+        tangents == TangentSource::meshopt ? TangentMethod::meshopt : TangentMethod::mikktspace;
+    std::vector<ModelTangents> all;
+    std::set<std::pair<int, int>> known;
+    for (const auto& group : job.task.model_output->images) {
+        const ModelInput& material = *group.front();
+        const auto is_made = [&](const ModelPicture& picture) {
+            return picture.maps.front().material == material.map->material;
+        };
+        if (std::none_of(changes.pictures.begin(), changes.pictures.end(), is_made)) continue;
+        const auto model = material.read(LastModel::Part::all, job.read_options);
+        if (!model) return model.error();
+        for (const MeshPart* const part : material.parts_without(**model, tangents)) {
+            if (!known.emplace(part->mesh, part->primitive).second) continue;
+            const auto moved = with_moved_uvs(*part, material.map->uv_set, material.map->uv_transform);
+            if (!moved) return moved.error().of(material.name());
+            auto made = make_tangents(*moved, method, material.map->uv_set, {job.threads(), {}});
+            if (!made) return made.error().of(material.name());
+            all.push_back({part->mesh, part->primitive, std::move(*made)});
+        }
+    }
+    return all;
+}
+
+Result<void> write_model_output(Job& job, const ModelChanges& changes) {
     MeshReadOptions how;
     how.reader = job.read_options;
     const auto written = write_model(job.task.input, job.task.output, changes, how, job.write_options);
@@ -128,7 +191,12 @@ Result<void> write_model_of(Job& job, const ModelChanges& changes) {
     };
     warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
     warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
-    std::ignore = job.reached(1.0);
+    if (written->compressed > 0) {
+        job.warn(
+            fmt::format("Draco compresses {} of its primitives, which get no tangents: viewers that make them by "
+                        "MikkTSpace, as glTF says, need none",
+                        written->compressed));
+    }
     return {};
 }
 

@@ -28,7 +28,9 @@ namespace tex::cli {
 struct ModelOutput {
     // The maps that change, in groups that show the same image.
     std::vector<std::vector<std::shared_ptr<const ModelInput>>> images;
-    std::optional<Error> error = {};  // why nothing can be written
+    bool is_lod = false;                       // materials get maps that are made for them, and parts tangents
+    std::vector<ModelTangents> tangents = {};  // the parts that get tangents, without these
+    std::optional<Error> error = {};           // why nothing can be written
 
     // A picture for each group, without its bytes.
     [[nodiscard]] ModelChanges changes(Container container) const;
@@ -44,8 +46,17 @@ struct ModelOutput {
 // their files. `material` is that of maps_to_write(). What is wrong with the model becomes its error.
 std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
                                         const MeshReadOptions& options);
+// The same for a model whose materials get maps that are made for it, as materials_of_model() lists them.
+// `tangents` are those of --tangents.
+std::vector<ModelFile> set_lod_output(Task& task, const std::string& material, std::optional<TangentSource> tangents,
+                                      const MeshReadOptions& options);
 
-// Writes the model of a job with these changes, and reports the files beside it. Errors: those of write_model().
-[[nodiscard]] Result<void> write_model_of(Job& job, const ModelChanges& changes);
+// The tangents that these maps of an LOD are made for, of the parts that need others than their own. `tangents` are
+// those of --tangents.
+[[nodiscard]] Result<std::vector<ModelTangents>> tangents_for(const Job& job, const ModelChanges& changes,
+                                                              std::optional<TangentSource> tangents);
+
+// Writes the model of a job with these changes, and warns of what it lacks.
+[[nodiscard]] Result<void> write_model_output(Job& job, const ModelChanges& changes);
 
 }  // namespace tex::cli

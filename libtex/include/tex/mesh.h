@@ -128,6 +128,10 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 // Errors: bad_data, with the first violation ("index 8 of triangle 3 is out of range: there are 8 vertices").
 [[nodiscard]] TEX_API Result<void> check_part(const MeshPart& part);
 
+// The part with the UVs of a set where a material puts them. Errors: bad_option (there is no such set), bad_data (the
+// UVs become infinite), out_of_memory.
+[[nodiscard]] TEX_API Result<MeshPart> with_moved_uvs(MeshPart part, int uv_set, const UvTransform& transform);
+
 // The part as it stands in the scene. Positions are multiplied by the matrix; normals by its inverse transpose, then
 // normalised; tangents by the matrix, then normalised. If the determinant is negative, the node mirrors the part: each
 // triangle's second and third corner change places, so that corners stay counter-clockwise, and w changes its sign

@@ -373,7 +373,7 @@ struct StepsReport {
 
 // -- model output --------------------------------------------------------------------------------------------------
 //
-// Writes a glTF model with other pictures in the slots of its normal maps.
+// Writes a glTF model with other pictures in the slots of its normal maps, and with other tangents.
 //
 // All else keeps its bytes: the text of the JSON with the order of its keys, its numbers and extensions that libtex
 // does not know; buffers, which stay compressed; other images and chunks. A picture stays where the old one was: in a
@@ -382,8 +382,12 @@ struct StepsReport {
 // An image, a texture or bytes of a buffer that something else uses, too (a colour of the material, a material whose
 // map stays), are left as they are, and new ones are added for the maps: in GLB in the binary chunk, if there is one. A
 // texture names the new picture as its source, whatever extension named the old one (KHR_texture_basisu,
-// MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif). An extension that no texture uses any more leaves the lists of
-// the extensions.
+// MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif); WebP is named by EXT_texture_webp, which the model then
+// requires. An extension that no texture uses any more leaves the lists of the extensions.
+//
+// Tangents are an attribute of vertices. A vertex whose corners have different ones is copied to the end of all of its
+// attributes, with all of its morph targets; other vertices and their numbers stay. Attributes that grow are no longer
+// compressed by meshoptimizer. What Draco compresses keeps its tangents, or has none.
 //
 // Files beside the model. If the output is in another folder than the input, all files that the model names are copied
 // to the same places beside the output. A file that changes (a picture, a buffer with one) is written there, a picture
@@ -393,13 +397,23 @@ struct StepsReport {
 // A picture that some maps of a model get. All of them have the same image, or images of the same file or bytes.
 struct ModelPicture {
     std::vector<ModelMap> maps;
-    Container container = Container::png;  // png or jpeg
+    Container container = Container::png;  // png, jpeg or webp
     std::vector<std::byte> bytes = {};     // of the file
+    // Whether the slots get scale, uv_set and uv_transform of `maps`, too. Then materials without a normal map, of
+    // which ModelMap::image is -1, get one.
+    bool sets_slots = false;
+};
+
+// Tangents that a part gets.
+struct ModelTangents {
+    int mesh = 0, primitive = 0;   // MeshPart::mesh and primitive
+    std::vector<Float4> tangents;  // one for each element of MeshPart::indices
 };
 
 // What changes in a model.
 struct ModelChanges {
     std::vector<ModelPicture> pictures;
+    std::vector<ModelTangents> tangents = {};  // at most one for each part
 };
 
 // A file of the model that is written.
@@ -413,14 +427,16 @@ struct ModelFiles {
     std::vector<ModelFile> files;           // in the order in which they take their places; the model is the last one
     std::vector<std::string> missing = {};  // files that the model names and that do not exist: they are not copied
     std::vector<std::string> outside = {};  // URIs of what is not in its folder: they stay as they are
+    int compressed = 0;                     // parts that get no tangents, because Draco compresses them
 };
 
-// The files that write_model() would write. The bytes of the pictures do not matter.
+// The files that write_model() would write. The bytes of the pictures do not matter, nor do values of tangents.
 //
 // Errors: those of read_model_maps(); io (a file beside the model is no regular file); unsupported (the output is not
 // called .glb and the input is GLB, or not .gltf and the input is text; a file beside the model that would be written
-// has an extension that models do not use); bad_option (a map is not one of the model, or has no image; two pictures
-// are for one map; another container).
+// has an extension that models do not use; there are tangents, and no buffer that can hold them); bad_option (a map is
+// not one of the model, or has no image; two pictures are for one map; another container; tangents are not those of a
+// part).
 [[nodiscard]] TEX_API Result<ModelFiles> model_files(const std::string& input, const std::string& output,
                                                      const ModelChanges& changes, const MeshReadOptions& options = {});
 

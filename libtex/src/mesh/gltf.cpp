@@ -13,6 +13,7 @@
 
 #include <tex/mesh.h>
 
+#include "mesh/gltf_corners.h"
 #include "mesh/gltf_extensions.h"
 #include "mesh/gltf_materials.h"
 
@@ -67,21 +68,6 @@ private:
     std::vector<std::uint32_t> seen_in_;  // for each vertex, the primitive that last used it
     std::vector<std::uint32_t> place_;
 };
-
-// Corners of triangles from those of lists, strips and fans (glTF 2.0, 3.7.2.1).
-Result<std::vector<std::uint32_t>> triangles_of(std::vector<std::uint32_t> corners, std::int64_t mode) {
-    if (mode == 4) {
-        corners.resize(corners.size() / 3 * 3);  // GPUs draw no incomplete triangle
-        return corners;
-    }
-    std::vector<std::uint32_t> result;
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-        const std::size_t odd = mode == 5 ? k % 2 : 0;
-        const std::uint32_t a = mode == 5 ? corners[k - 2] : corners[0];
-        result.insert(result.end(), {a, corners[k - 1 + odd], corners[k - odd]});
-    }
-    return result;
-}
 
 Result<PrimitiveReader::Read> PrimitiveReader::corners_of(JsonValue primitive, std::size_t vertices) {
     auto mode = primitive["mode"].is_null() ? std::optional<std::int64_t>(4) : primitive["mode"].count();

@@ -202,6 +202,11 @@ std::uint32_t GltfAccessor::integer(std::size_t element) const {
     return p == nullptr ? 0 : load_le(p, size_of_type(type));
 }
 
+void GltfAccessor::copy(std::size_t element, std::byte* to) const {
+    const std::byte* p = at(element);
+    p == nullptr ? std::fill_n(to, size_, std::byte{0}) : std::copy_n(p, size_, to);
+}
+
 // Each file is loaded once, however often it is named.
 Result<std::span<const std::byte>> GltfBuffers::load(const std::string& uri) {
     const bool inside = is_data_uri(uri);

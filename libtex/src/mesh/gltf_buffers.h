@@ -48,6 +48,10 @@ public:
     // An unsigned integer. Precondition: type is one of 5121, 5123, 5125.
     [[nodiscard]] std::uint32_t integer(std::size_t element) const;
 
+    // The bytes of an element, and their number.
+    void copy(std::size_t element, std::byte* to) const;
+    [[nodiscard]] std::size_t element_size() const { return size_; }
+
 private:
     friend class GltfBuffers;
     [[nodiscard]] const std::byte* at(std::size_t element) const;

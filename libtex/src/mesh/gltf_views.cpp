@@ -63,9 +63,8 @@ std::size_t GltfViews::buffer_of(std::int64_t view) const {
 }
 
 bool GltfViews::is_own(std::int64_t view, std::size_t uses) const {
-    const auto used = uses_.find(view);
     const JsonValue place = root_["bufferViews"][static_cast<std::size_t>(view)];
-    if (used == uses_.end() || used->second != uses || !place["extensions"].is_null()) return false;
+    if (uses == 0 || this->uses(view) != uses || !place["extensions"].is_null()) return false;
     const std::size_t begin = number_or_zero(place["byteOffset"]), end = begin + number_or_zero(place["byteLength"]);
     const auto found = ranges_.find(buffer_of(view));
     return found != ranges_.end() && begin < end &&
@@ -78,9 +77,15 @@ void GltfViews::replace(std::int64_t view, std::span<const std::byte> bytes) {
     changes_[buffer_of(view)].replaced.push_back({static_cast<std::size_t>(view), bytes});
 }
 
-std::int64_t GltfViews::add(std::size_t buffer, std::span<const std::byte> bytes) {
+std::size_t GltfViews::uses(std::int64_t view) const {
+    const auto found = uses_.find(view);
+    return found == uses_.end() ? 0 : found->second;
+}
+
+std::int64_t GltfViews::add(std::size_t buffer, std::span<const std::byte> bytes, std::string more) {
     Changes& changes = changes_[buffer];
     changes.added.push_back(bytes);
+    changes.more.push_back(std::move(more));
     changes.numbers.push_back(added_.size());
     added_.emplace_back();
     return static_cast<std::int64_t>(root_["bufferViews"].size() + added_.size() - 1);
@@ -139,9 +144,9 @@ Result<std::vector<std::byte>> GltfViews::remake(std::size_t buffer, const Chang
     for (const Step& step : steps) list->element(step.view)->set("byteLength", std::to_string(step.bytes.size()));
     for (std::size_t k = 0; k < changes.added.size(); ++k) {
         made.resize(aligned(made.size()));
-        added_[changes.numbers[k]] = "{\"buffer\":" + std::to_string(buffer) +
-                                     ",\"byteOffset\":" + std::to_string(made.size()) +
-                                     ",\"byteLength\":" + std::to_string(changes.added[k].size()) + "}";
+        added_[changes.numbers[k]] =
+            "{\"buffer\":" + std::to_string(buffer) + ",\"byteOffset\":" + std::to_string(made.size()) +
+            ",\"byteLength\":" + std::to_string(changes.added[k].size()) + changes.more[k] + "}";
         made.insert(made.end(), changes.added[k].begin(), changes.added[k].end());
     }
     text.member("buffers")->element(buffer)->set("byteLength", std::to_string(made.size()));

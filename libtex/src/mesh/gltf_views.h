@@ -39,9 +39,12 @@ public:
 
     // Gives the view other bytes. Precondition: is_own(). The bytes must outlive this.
     void replace(std::int64_t view, std::span<const std::byte> bytes);
-    // Adds a view of new bytes at the end of the buffer. Returns its number.
-    std::int64_t add(std::size_t buffer, std::span<const std::byte> bytes);
+    // Adds a view of new bytes at the end of the buffer. Returns its number. `more`: further members, as text that
+    // begins with a comma.
+    std::int64_t add(std::size_t buffer, std::span<const std::byte> bytes, std::string more = {});
     [[nodiscard]] std::size_t buffer_of(std::int64_t view) const;
+    // How often something names the view.
+    [[nodiscard]] std::size_t uses(std::int64_t view) const;
 
     // Makes the new buffers, and changes the views in the text, and their lengths. `load` has the bytes of a buffer.
     // Errors: bad_data, those of `load`.
@@ -74,6 +77,7 @@ private:
         std::vector<Replaced> replaced;
         std::vector<std::span<const std::byte>> added;
         std::vector<std::size_t> numbers;  // of the views of `added`, counted in added_
+        std::vector<std::string> more;     // of the views of `added`
     };
     Result<std::vector<std::byte>> remake(std::size_t buffer, const Changes& changes, std::vector<std::byte> bytes,
                                           JsonNode& text);

@@ -15,6 +15,8 @@
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
 #include "mesh/gltf_materials.h"
+#include "mesh/gltf_slots.h"
+#include "mesh/gltf_tangents.h"
 #include "mesh/gltf_views.h"
 #include "mesh/json_text.h"
 
@@ -26,6 +28,7 @@ constexpr int kNobody = -1, kUnused = -2;  // instead of the number of a picture
 Error bad_picture(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
 std::string_view media_type_of(Container container) {
+    if (container == Container::webp) return "image/webp";
     return container == Container::jpeg ? "image/jpeg" : "image/png";
 }
 
@@ -36,19 +39,23 @@ std::string media_type_of_uri(std::string_view uri) {
     return std::string(type);
 }
 
-// What several users make of one thing: the picture that all of them get, or nobody.
-void join(int& owner, int picture) { owner = owner == kUnused || owner == picture ? picture : kNobody; }
+// What several users make of one thing: it belongs to the first picture, or to nobody if a user gets none.
+void join(int& owner, int picture) {
+    if (owner == kUnused || picture == kNobody) owner = picture;
+}
 
 class GltfWriter {
 public:
     GltfWriter(JsonValue root, JsonText& text, std::span<const std::byte> binary, const LoadBeside& load,
-               const ModelPlace& place, const std::vector<ModelPicture>& pictures)
-        : root_(root), text_(text.root()), binary_(binary), load_(load), place_(place), pictures_(pictures),
-          names_(root, place), views_(root), own_(pictures.size()) {}
+               const ModelPlace& place, const ModelChanges& changes, GltfBuffers& buffers)
+        : root_(root), text_(text.root()), binary_(binary), load_(load), place_(place), changes_(changes),
+          pictures_(changes.pictures), names_(root, place), views_(root),
+          tangents_(root, text_, buffers, views_, !binary.empty()), own_(changes.pictures.size()) {}
 
     Result<void> change();
     [[nodiscard]] const std::optional<std::vector<std::byte>>& binary() const { return changed_binary_; }
     std::vector<BesideModel> take_beside() { return std::move(beside_); }
+    [[nodiscard]] int compressed() const { return tangents_.compressed(); }
     [[nodiscard]] const std::vector<std::string>& outside() const { return names_.outside(); }
 
 private:
@@ -56,6 +63,7 @@ private:
         std::size_t material = 0;
         GltfSlot slot;
         int picture = kNobody;
+        const ModelMap* map = nullptr;  // that gets the picture
     };
     // Where a picture is from now on.
     struct Home {
@@ -65,17 +73,16 @@ private:
         std::vector<std::int64_t> images;
     };
 
+    Result<void> check_pictures();
     Result<void> find_slots();
     void find_owners();
+    Result<void> house(std::size_t picture);
     Result<void> house_pictures();
     Result<void> change_buffers();
     void name_files();
     void name_picture(std::size_t picture);
     void change_images(std::size_t picture);
     void change_textures();
-    void change_texture(std::int64_t texture, std::int64_t image);
-    std::int64_t add_texture(std::int64_t like, std::int64_t image);
-    void forget_extensions();
     Result<std::vector<std::byte>> load_buffer(std::size_t buffer) const;
     [[nodiscard]] JsonValue image(std::int64_t index) const { return root_["images"][static_cast<std::size_t>(index)]; }
     [[nodiscard]] std::int64_t image_of(const Slot& slot) const { return image_of_texture(root_, slot.slot.texture); }
@@ -85,9 +92,11 @@ private:
     std::span<const std::byte> binary_;
     const LoadBeside& load_;
     const ModelPlace& place_;
+    const ModelChanges& changes_;
     const std::vector<ModelPicture>& pictures_;
     GltfNames names_;
     GltfViews views_;
+    GltfTangents tangents_;
     std::vector<Slot> slots_;
     std::vector<int> texture_owners_;
     std::vector<std::vector<std::int64_t>> own_;  // for each picture, the images that it replaces everywhere
@@ -97,22 +106,32 @@ private:
     std::vector<BesideModel> beside_;
 };
 
-// Finds all slots, and which of them get a picture.
+Result<void> GltfWriter::check_pictures() {
+    for (const ModelPicture& picture : pictures_) {
+        if (picture.maps.empty()) return bad_picture("a picture is for no map");
+        if (picture.container != Container::png && picture.container != Container::jpeg &&
+            picture.container != Container::webp)
+            return bad_picture("a picture of a model is PNG, JPEG or WebP");
+        for (const ModelMap& map : picture.maps) {
+            if (map.image < 0 && (!picture.sets_slots || map.slot != NormalSlot::normal))
+                return bad_picture("the map of material " + std::to_string(map.material) + " has no image");
+        }
+    }
+    return {};
+}
+
+// Finds all slots, and which of them get a picture. Materials without the slot get it.
 Result<void> GltfWriter::find_slots() {
     struct Want {
-        int picture, image;
+        int picture;
+        const ModelMap* map;
         bool is_found = false;
     };
     std::map<std::pair<int, NormalSlot>, Want> wanted;
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
-        if (pictures_[p].maps.empty()) return bad_picture("a picture is for no map");
-        if (pictures_[p].container != Container::png && pictures_[p].container != Container::jpeg)
-            return bad_picture("a picture of a model is PNG or JPEG");
         for (const ModelMap& map : pictures_[p].maps) {
-            if (!wanted.emplace(std::pair(map.material, map.slot), Want{static_cast<int>(p), map.image}).second)
+            if (!wanted.emplace(std::pair(map.material, map.slot), Want{static_cast<int>(p), &map}).second)
                 return bad_picture("two pictures are for one map of material " + std::to_string(map.material));
-            if (map.image < 0)
-                return bad_picture("the map of material " + std::to_string(map.material) + " has no image");
         }
     }
     const JsonValue materials = root_["materials"];
@@ -123,10 +142,18 @@ Result<void> GltfWriter::find_slots() {
             slots_.push_back({m, found, kNobody});
             const auto kind = normal_slot(found);
             const auto want = kind ? wanted.find({static_cast<int>(m), *kind}) : wanted.end();
-            if (want == wanted.end() || image_of(slots_.back()) != want->second.image) continue;
+            if (want == wanted.end() || image_of(slots_.back()) != want->second.map->image) continue;
             slots_.back().picture = want->second.picture;
+            slots_.back().map = want->second.map;
             want->second.is_found = true;
         }
+        const auto none = wanted.find({static_cast<int>(m), NormalSlot::normal});
+        if (none == wanted.end() || none->second.is_found || none->second.map->image >= 0) continue;
+        GltfSlot added;
+        added.name = "normalTexture";
+        added.texture = -1;
+        slots_.push_back({m, added, none->second.picture, none->second.map});
+        none->second.is_found = true;
     }
     for (const auto& [map, want] : wanted) {
         if (!want.is_found) return bad_picture("material " + std::to_string(map.first) + " has no such map");
@@ -156,6 +183,7 @@ void GltfWriter::find_owners() {
     for (const Slot& slot : slots_) {
         if (slot.picture == kNobody) continue;
         const std::int64_t index = image_of(slot);
+        if (index < 0) continue;
         auto& own = own_[static_cast<std::size_t>(slot.picture)];
         if (owners[static_cast<std::size_t>(index)] == slot.picture &&
             std::find(own.begin(), own.end(), index) == own.end())
@@ -163,40 +191,50 @@ void GltfWriter::find_owners() {
     }
 }
 
-// Puts each picture where the image was: into a buffer, into the text, or into a file, which gets its name later.
 Result<void> GltfWriter::house_pictures() {
     for (std::size_t p = 0; p < pictures_.size(); ++p) {
-        Home home;
-        home.images = own_[p];
-        const auto slot = std::find_if(slots_.begin(), slots_.end(),
-                                       [&](const Slot& each) { return each.picture == static_cast<int>(p); });
-        const std::int64_t like = home.images.empty() ? image_of(*slot) : home.images.front();
-        if (const auto view = image(like)["bufferView"].count()) {
-            const auto uses = std::count_if(home.images.begin(), home.images.end(), [&](std::int64_t other) {
-                return image(other)["bufferView"].count() == view;
-            });
-            if (static_cast<std::size_t>(*view) >= root_["bufferViews"].size())
-                return bad_gltf("image " + std::to_string(like) + " is in a view that does not exist");
-            home.view = view;
-            if (uses > 0 && views_.is_own(*view, static_cast<std::size_t>(uses)))
-                views_.replace(*view, pictures_[p].bytes);
-            else
-                home.view = views_.add(views_.buffer_of(*view), pictures_[p].bytes);
-        } else if (const std::string uri = image(like)["uri"].text().value_or(""); is_data_uri(uri)) {
-            home.uri = encode_data_uri(media_type_of(pictures_[p].container), pictures_[p].bytes);
-        } else if (home.images.empty() && !binary_.empty() && root_["buffers"][0]["uri"].is_null()) {
-            home.view = views_.add(0, pictures_[p].bytes);  // of a GLB file, which need name no further file
-        } else {
-            auto path = path_of_uri(uri);
-            if (!path) return path.error();
-            home.file = std::move(*path);
-        }
-        for (const std::int64_t own : home.images) {
-            const auto path = path_of_uri(image(own)["uri"].text().value_or(""));
-            if (path) names_.forget(*path);
-        }
-        homes_.push_back(std::move(home));
+        if (auto housed = house(p); !housed) return housed;
     }
+    return {};
+}
+
+// Puts a picture where the image was: into a buffer, into the text, or into a file, which gets its name later.
+Result<void> GltfWriter::house(std::size_t picture) {
+    Home home;
+    home.images = own_[picture];
+    const std::vector<std::byte>& bytes = pictures_[picture].bytes;
+    const auto slot = std::find_if(slots_.begin(), slots_.end(),
+                                   [&](const Slot& each) { return each.picture == static_cast<int>(picture); });
+    const std::int64_t like = home.images.empty() ? image_of(*slot) : home.images.front();
+    const std::string uri = like < 0 ? "" : image(like)["uri"].text().value_or("");
+    const bool takes_binary = !binary_.empty() && root_["buffers"][0]["uri"].is_null();  // and needs no further file
+    const std::string first_buffer = root_["buffers"][0]["uri"].text().value_or("");
+    if (const auto view = like < 0 ? std::nullopt : image(like)["bufferView"].count()) {
+        const auto uses = std::count_if(home.images.begin(), home.images.end(),
+                                        [&](std::int64_t other) { return image(other)["bufferView"].count() == view; });
+        if (static_cast<std::size_t>(*view) >= root_["bufferViews"].size())
+            return bad_gltf("image " + std::to_string(like) + " is in a view that does not exist");
+        home.view = view;
+        if (uses > 0 && views_.is_own(*view, static_cast<std::size_t>(uses)))
+            views_.replace(*view, bytes);
+        else
+            home.view = views_.add(views_.buffer_of(*view), bytes);
+    } else if (is_data_uri(uri) || (like < 0 && !takes_binary && is_data_uri(first_buffer))) {
+        home.uri = encode_data_uri(media_type_of(pictures_[picture].container), bytes);
+    } else if (home.images.empty() && takes_binary) {
+        home.view = views_.add(0, bytes);
+    } else if (like < 0) {
+        home.file = "normal_" + std::to_string(slot->material) + ".png";
+    } else {
+        auto path = path_of_uri(uri);
+        if (!path) return path.error();
+        home.file = std::move(*path);
+    }
+    for (const std::int64_t own : home.images) {
+        const auto path = path_of_uri(image(own)["uri"].text().value_or(""));
+        if (path) names_.forget(*path);
+    }
+    homes_.push_back(std::move(home));
     return {};
 }
 
@@ -255,15 +293,20 @@ void GltfWriter::name_picture(std::size_t picture) {
     const bool has_extension = container_of(home.file) == container;  // .jpeg stays .jpeg
     const std::string extension = has_extension                  ? home.file.substr(dot)
                                   : container == Container::jpeg ? std::string(".jpg")
+                                  : container == Container::webp ? std::string(".webp")
                                                                  : std::string(".png");
     const std::string name = names_.name_for(home.file, extension);
     home.uri = uri_of_path(name);
-    beside_.push_back({name, home.file, true, pictures_[picture].bytes});
+    const bool is_new = home.images.empty() && std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+                            return slot.picture == static_cast<int>(picture) && image_of(slot) >= 0;
+                        });
+    beside_.push_back({name, is_new ? std::string() : home.file, true, pictures_[picture].bytes});
 }
 
 // Describes the picture in its images, or in one more.
 void GltfWriter::change_images(std::size_t picture) {
     Home& home = homes_[picture];
+    if (text_.member("images") == nullptr) text_.set("images", "[]");
     JsonNode& list = *text_.member("images");
     const std::string type = json_string(media_type_of(pictures_[picture].container));
     for (const std::int64_t own : home.images) {
@@ -282,30 +325,13 @@ void GltfWriter::change_images(std::size_t picture) {
     if (!home.images.empty()) return;
     const auto slot = std::find_if(slots_.begin(), slots_.end(),
                                    [&](const Slot& each) { return each.picture == static_cast<int>(picture); });
-    const auto name = image(image_of(*slot))["name"].text();
+    const std::int64_t like = image_of(*slot);
+    const auto name = like < 0 ? std::nullopt : image(like)["name"].text();
     std::string text = name ? "{\"name\":" + json_string(*name) + "," : "{";
     text += home.view ? "\"bufferView\":" + std::to_string(*home.view) + ",\"mimeType\":" + type
                       : "\"uri\":\"" + home.uri + '"';
     home.images.push_back(static_cast<std::int64_t>(list.size()));
     list.append(text + "}");
-}
-
-void GltfWriter::change_texture(std::int64_t texture, std::int64_t image) {
-    JsonNode& node = *text_.member("textures")->element(static_cast<std::size_t>(texture));
-    const JsonValue description = root_["textures"][static_cast<std::size_t>(texture)];
-    if (description["source"].count() != image) node.set("source", std::to_string(image));
-    JsonNode* const extensions = node.member("extensions");
-    if (extensions == nullptr) return;
-    for (const char* const name : kTextureExtensions) extensions->remove(name);
-    if (extensions->size() == 0) node.remove("extensions");
-}
-
-std::int64_t GltfWriter::add_texture(std::int64_t like, std::int64_t image) {
-    const auto sampler = root_["textures"][static_cast<std::size_t>(like)]["sampler"].count();
-    JsonNode& list = *text_.member("textures");
-    list.append((sampler ? "{\"sampler\":" + std::to_string(*sampler) + "," : "{") +
-                "\"source\":" + std::to_string(image) + "}");
-    return static_cast<std::int64_t>(list.size()) - 1;
 }
 
 // Makes the textures of slots show their pictures. A texture that other slots use, too, is left to them.
@@ -314,57 +340,40 @@ void GltfWriter::change_textures() {
     for (const Slot& slot : slots_) {
         if (slot.picture == kNobody) continue;
         const std::int64_t texture = slot.slot.texture;
+        const auto number = static_cast<std::size_t>(texture);
+        const ModelPicture& picture = pictures_[static_cast<std::size_t>(slot.picture)];
         const std::vector<std::int64_t>& images = homes_[static_cast<std::size_t>(slot.picture)].images;
         const bool stays = std::find(images.begin(), images.end(), image_of(slot)) != images.end();
         const std::int64_t image = stays ? image_of(slot) : images.front();
-        if (texture_owners_[static_cast<std::size_t>(texture)] == slot.picture) {
-            change_texture(texture, image);
-            continue;
+        const bool is_own = number < texture_owners_.size() && texture_owners_[number] == slot.picture;
+        JsonNode& material = *text_.member("materials")->element(slot.material);
+        JsonNode* node = texture < 0 ? nullptr : slot_node(material, slot.slot);
+        if (is_own) {
+            show_image(text_, *text_.member("textures")->element(number), image, picture.container);
+        } else {
+            const auto [found, is_new] = added.emplace(std::pair(slot.picture, texture), 0);
+            const auto sampler = texture < 0 ? std::nullopt : root_["textures"][number]["sampler"].count();
+            if (is_new) found->second = add_texture(text_, sampler, image, picture.container);
+            if (node == nullptr)
+                node = add_slot(material, found->second);
+            else
+                node->set("index", std::to_string(found->second));
         }
-        const auto [found, is_new] = added.emplace(std::pair(slot.picture, texture), 0);
-        if (is_new) found->second = add_texture(texture, image);
-        JsonNode* node = text_.member("materials")->element(slot.material);
-        if (!slot.slot.extension.empty()) node = node->member("extensions")->member(slot.slot.extension);
-        JsonNode* info = node->member(slot.slot.name);
-        if (info == nullptr) info = node->member("pbrMetallicRoughness")->member(slot.slot.name);
-        info->set("index", std::to_string(found->second));
-    }
-}
-
-// An extension that no texture uses any more is neither used nor required.
-void GltfWriter::forget_extensions() {
-    JsonNode* const textures = text_.member("textures");
-    for (const char* const name : kTextureExtensions) {
-        bool was_used = false, is_used = false;
-        for (std::size_t t = 0; t < root_["textures"].size(); ++t) {
-            if (root_["textures"][t]["extensions"][name].is_null()) continue;
-            was_used = true;
-            JsonNode* const extensions = textures->element(t)->member("extensions");
-            is_used = is_used || (extensions != nullptr && extensions->member(name) != nullptr);
-        }
-        if (!was_used || is_used) continue;
-        for (const char* const list : {"extensionsUsed", "extensionsRequired"}) {
-            JsonNode* const node = text_.member(list);
-            if (node == nullptr) continue;
-            for (std::size_t k = node->size(); k-- > 0;) {
-                std::string word;
-                node->element(k)->write(word);
-                if (word == json_string(name)) node->remove_element(k);
-            }
-            if (node->size() == 0) text_.remove(list);
-        }
+        if (picture.sets_slots) set_slot(text_, *node, slot.slot, *slot.map);
     }
 }
 
 Result<void> GltfWriter::change() {
+    if (auto sound = check_pictures(); !sound) return sound;
     if (auto found = find_slots(); !found) return found;
     find_owners();
     if (auto housed = house_pictures(); !housed) return housed;
+    if (auto changed = tangents_.change(changes_.tangents); !changed) return changed;
     if (auto changed = change_buffers(); !changed) return changed;
     name_files();
     for (std::size_t p = 0; p < homes_.size(); ++p) change_images(p);
     change_textures();
-    forget_extensions();
+    forget_extensions(root_, text_);
     return {};
 }
 
@@ -378,11 +387,12 @@ Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside
     if (!document) return document.error();
     if (auto known = check_asset(document->root()); !known) return known.error();
     JsonText text(chunks->json);
-    GltfWriter writer(document->root(), text, chunks->binary, load, place, changes.pictures);
+    GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
+    GltfWriter writer(document->root(), text, chunks->binary, load, place, changes, buffers);
     if (auto changed = writer.change(); !changed) return changed.error();
     auto bytes = with_chunks(file, *chunks, text.text(), writer.binary());
     if (!bytes) return bytes.error();
-    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside()};
+    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside(), writer.compressed()};
 }
 
 }  // namespace tex::inline v1

@@ -20,7 +20,7 @@ namespace tex::inline v1 {
 // A file beside the model that is written, by relative paths.
 struct BesideModel {
     std::string path;         // from the output
-    std::string from;         // from the input: what it is a copy of, or whose place it takes
+    std::string from;         // from the input: what it is a copy of, or whose place it takes; empty: neither
     bool is_changed = false;  // otherwise it is a copy
     std::vector<std::byte> bytes = {};
 };
@@ -29,6 +29,7 @@ struct WrittenGltf {
     std::vector<std::byte> bytes;
     std::vector<BesideModel> beside;
     std::vector<std::string> outside;  // GltfNames::outside()
+    int compressed = 0;                // ModelFiles::compressed
 };
 
 // The file with these changes, as model output in pipeline.h describes. If the output is in the folder of the input,

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// transfer-normals with models as its outputs, and with an output for each material.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "unit/gltf_files.h"
+
+namespace tex::cli {
+namespace {
+
+using JsonValue = nlohmann::json;
+
+constexpr double kPi = 3.14159265358979323846;
+
+// A sphere of radius 1 whose UVs are longitude and latitude.
+std::string sphere(int columns, int rows, const std::string& material) {
+    GltfMaker maker;
+    std::vector<float> positions, uvs;
+    std::vector<std::uint16_t> indices;
+    for (int j = 0; j <= rows; ++j) {
+        for (int i = 0; i <= columns; ++i) {
+            const double u = double(i) / columns, v = double(j) / rows, a = 2.0 * kPi * u, b = kPi * v;
+            for (const double x : {std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)})
+                positions.push_back(static_cast<float>(x));
+            uvs.insert(uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
+        }
+    }
+    for (int j = 0; j < rows; ++j) {
+        for (int i = 0; i < columns; ++i) {
+            const int a = j * (columns + 1) + i, b = a + columns + 1;
+            if (j < rows - 1)
+                for (const int k : {a, b, b + 1}) indices.push_back(static_cast<std::uint16_t>(k));
+            if (j > 0)
+                for (const int k : {a, b + 1, a + 1}) indices.push_back(static_cast<std::uint16_t>(k));
+        }
+    }
+    maker.add(positions, "VEC3", 5126);
+    maker.add(positions, "VEC3", 5126);
+    maker.add(uvs, "VEC2", 5126);
+    maker.add(indices, "SCALAR", 5123);
+    return maker.glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":0})",
+                     ",\"materials\":[" + material + "]");
+}
+
+}  // namespace
+
+class Lods : public testing::Test {
+protected:
+    Lods() {
+        scratch_.write("low.glb", sphere(16, 8, R"({"name":"Skin"})"));
+        scratch_.write("high.glb", sphere(128, 64, R"({"name":"Skin"})"));
+    }
+    Ran go(const std::string& script) { return shell(scratch_, "set -e; " + script); }
+    Ran does(const std::string& script) {
+        Ran ran = go(script);
+        EXPECT_EQ(ran.code, 0) << script << ": " << ran.err;
+        return ran;
+    }
+    void refuses(const std::string& script, int code, const std::string& said) {
+        const std::vector<std::string> before = scratch_.list();
+        const Ran ran = go(script);
+        EXPECT_EQ(ran.code, code) << script << ": " << ran.err;
+        EXPECT_NE(ran.err.find(said), std::string::npos) << script << ": " << ran.err;
+        EXPECT_EQ(scratch_.list(), before) << script;
+    }
+    // Squares from z = 0 beside each other, each with a material, whose JSON is given.
+    void write_squares(const std::string& name, const std::vector<std::string>& materials, const std::string& more) {
+        GltfMaker maker;
+        std::string primitives, list;
+        for (std::size_t k = 0; k < materials.size(); ++k) {
+            const auto x = static_cast<float>(2 * k);
+            const int first = maker.add(std::vector<float>{x, 0, 0, x + 1, 0, 0, x + 1, 1, 0, x, 1, 0}, "VEC3", 5126);
+            maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
+            maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
+            maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+            primitives += std::string(k == 0 ? "" : ",") + "{\"attributes\":{\"POSITION\":" + std::to_string(first) +
+                          ",\"NORMAL\":" + std::to_string(first + 1) + ",\"TEXCOORD_0\":" + std::to_string(first + 2) +
+                          "},\"indices\":" + std::to_string(first + 3) + ",\"material\":" + std::to_string(k) + "}";
+            list += (k == 0 ? "" : ",") + materials[k];
+        }
+        scratch_.write(name, maker.glb(primitives, ",\"materials\":[" + list + "]" + more));
+    }
+    // A picture with these codes everywhere.
+    void write_flat(const std::string& name, const std::string& codes) {
+        does("convert -size 16x16 'xc:rgb(" + codes + ")' " + name);
+    }
+    Model model(const std::string& name) {
+        auto read = read_model(scratch_.path(name));
+        EXPECT_TRUE(read) << read.error().message();
+        return read ? std::move(*read) : Model{};
+    }
+    NormalMap map_of(const Model& model, std::size_t index = 0) {
+        const auto texture = read_map(model, model.maps.at(index));
+        EXPECT_TRUE(texture) << texture.error().message();
+        return std::move(unpack(*texture)->levels.front());
+    }
+
+    Scratch scratch_;
+};
+
+// The map of a coarse sphere, decoded as a viewer does, against the formula of a sphere at the places that rays hit.
+TEST_F(Lods, ShowTheNormalsOfASphere) {
+    does(
+        "transfer-normals low.glb high.glb -o lod.glb --extent 128 --format rgb16 --quiet; "
+        "transfer-normals low.glb high.glb -o n.png --position-out p.exr --extent 128 --quiet");
+    const Model lod = model("lod.glb");
+    ASSERT_EQ(lod.maps.size(), 1u);
+    EXPECT_EQ(lod.mesh.parts[0].tangents.size(), lod.mesh.parts[0].positions.size());
+    const auto part = select_part(lod.mesh, {});
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->source, TangentSource::file);
+    const auto decoded = to_object_space(map_of(lod), {part->part, part->tangents});
+    const auto hits = read_image(scratch_.path("p.exr"));
+    ASSERT_TRUE(decoded && hits);
+    double sum = 0.0;
+    int count = 0;
+    for (int j = 0; j < 128; ++j) {
+        for (int i = 0; i < 128; ++i) {
+            if (decoded->coverage.at(i, j) != Coverage::triangle) continue;
+            const double x = hits->planes[0].at(i, j), y = hits->planes[1].at(i, j), z = hits->planes[2].at(i, j);
+            const NormalMap& map = decoded->map;
+            const double cosine =
+                (x * map.x.at(i, j) + y * map.y.at(i, j) + z * map.z.at(i, j)) / std::sqrt(x * x + y * y + z * z);
+            sum += std::acos(std::min(1.0, cosine)) * 180.0 / kPi;
+            ++count;
+        }
+    }
+    EXPECT_GT(count, 14000);
+    EXPECT_LT(sum / count, 0.3);
+}
+
+// x of 0.6 is a slope of 0.75; half of it is what the material shows.
+TEST_F(Lods, TheHighModelsOwnMapsCount) {
+    write_flat("n.png", "204,128,230");
+    const std::string more = R"(,"textures":[{"source":0}],"images":[{"uri":"n.png"}])";
+    write_squares("high.glb", {R"({"name":"Skin","normalTexture":{"index":0,"scale":0.5}})"}, more);
+    write_squares("low.glb", {R"({"name":"Skin"})"}, "");
+    const Ran ran = does("transfer-normals low.glb high.glb -o lod.glb");
+    EXPECT_EQ(ran.err, "");
+    const Model lod = model("lod.glb");
+    EXPECT_EQ(lod.maps.at(0).scale, 1.0);
+    const NormalMap map = map_of(lod);
+    EXPECT_EQ(map.extent(), (Extent{16, 16})) << "as the high model's";
+    EXPECT_NEAR(map.x.at(8, 8) / map.z.at(8, 8), 0.375, 0.02);
+    EXPECT_NEAR(map.y.at(8, 8), 0.0, 0.01);
+    does("transfer-normals low.glb high.glb -o flat.glb --high-normals off --extent 16 --quiet");
+    EXPECT_NEAR(map_of(model("flat.glb")).x.at(8, 8), 0.0, 0.01);
+    // A picture is made as always, with a word about them.
+    const Ran noted = does("transfer-normals low.glb high.glb -o n2.png --extent 16");
+    EXPECT_NE(noted.err.find("normal maps of its own, which are not used (material \"Skin\"); --high-normals own uses"),
+              std::string::npos)
+        << noted.err;
+    EXPECT_EQ(does("transfer-normals low.glb high.glb -o n3.png --extent 16 --high-normals own").err, "");
+    const auto named = read_texture(scratch_.path("n3.png"));
+    ASSERT_TRUE(named);
+    EXPECT_NEAR(unpack(*named)->levels[0].x.at(8, 8), map.x.at(8, 8), 0.01);
+    EXPECT_EQ(does("transfer-normals low.glb high.glb -o n4.png --extent 16 --high-normals off").err, "");
+}
+
+TEST_F(Lods, EveryMaterialGetsItsMap) {
+    write_flat("right.png", "204,128,230");
+    write_flat("left.png", "52,128,230");
+    const std::string more =
+        R"(,"textures":[{"source":0},{"source":1}],"images":[{"uri":"right.png"},{"uri":"left.png"}])";
+    const std::string a = R"({"name":"A","normalTexture":{"index":0}})",
+                      b = R"({"name":"b","normalTexture":{"index":1}})";
+    write_squares("high.glb", {a, b}, more);
+    // Both show one picture, so that they need two from now on.
+    write_squares(
+        "low.glb",
+        {R"({"name":"A","normalTexture":{"index":0,"scale":3}})", R"({"name":"B","normalTexture":{"index":0}})"},
+        R"(,"textures":[{"source":0}],"images":[{"uri":"right.png"}])");
+    does("mkdir out; transfer-normals low.glb high.glb -o out/lod.glb --json > line");
+    const Model lod = model("out/lod.glb");
+    ASSERT_EQ(lod.maps.size(), 2u);
+    EXPECT_GT(map_of(lod, 0).x.at(8, 8), 0.5f);
+    EXPECT_LT(map_of(lod, 1).x.at(8, 8), -0.5f);
+    EXPECT_EQ(lod.maps[0].scale, 1.0);
+    const auto line = JsonValue::parse(scratch_.read("line"));
+    ASSERT_EQ(line["maps"].size(), 2u);
+    EXPECT_EQ(line["maps"][1]["material"], "B");
+    EXPECT_EQ(line["maps"][1]["extent"], JsonValue::parse("[16,16]"));
+    EXPECT_FALSE(scratch_.has("out/left.png"));
+    // One alone leaves the other as it is.
+    does("transfer-normals low.glb high.glb -o out/one.glb --material B --quiet");
+    EXPECT_EQ(model("out/one.glb").maps[0].scale, 3.0);
+    // Pictures of all.
+    does(
+        "transfer-normals low.glb high.glb --material all --out-dir maps --name '{stem}_{material}.png' --extent 16 "
+        "--height-out 'h_{material}.png' --high-normals own --quiet");
+    for (const char* name : {"maps/low_A.png", "maps/low_B.png", "maps/h_A.png", "maps/h_B.png"})
+        EXPECT_TRUE(scratch_.has(name)) << name;
+    const auto left = read_texture(scratch_.path("maps/low_B.png"));
+    ASSERT_TRUE(left);
+    EXPECT_LT(unpack(*left)->levels[0].x.at(8, 8), -0.5f);
+    // Names that nothing has: all parts count, which is said.
+    write_squares("low.glb", {R"({"name":"C"})"}, "");
+    const Ran noted = does("transfer-normals low.glb high.glb -o out/c.glb");
+    EXPECT_NE(
+        noted.err.find("low.glb: C: the high mesh has no material of this name, and so rays meet all of its parts"),
+        std::string::npos)
+        << noted.err;
+}
+
+// gltfpack's UVs need their transform, and one that repeats the old map has no meaning for the new one.
+TEST_F(Lods, TransformsStayWhereUvsNeedThem) {
+    write_flat("n.png", "128,128,255");
+    const std::string more = R"(,"textures":[{"source":0}],"images":[{"uri":"n.png"}],"extensionsUsed":)"
+                             R"(["KHR_texture_transform"])";
+    const auto material = [](const std::string& scale) {
+        return R"({"name":"Skin","normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"scale":[)" + scale +
+               "," + scale + "]}}}}";
+    };
+    write_squares("high.glb", {R"({"name":"Skin"})"}, "");
+    write_squares("tiled.glb", {material("4")}, more);
+    write_squares("half.glb", {material("0.5")}, more);
+    does("for f in tiled half; do transfer-normals $f.glb high.glb -o out_$f.glb --quiet; done");
+    EXPECT_EQ(model("out_tiled.glb").maps.at(0).uv_transform, UvTransform{});
+    EXPECT_EQ(model("out_half.glb").maps.at(0).uv_transform.scale_x, 0.5);
+}
+
+TEST_F(Lods, WhatCannotBeIsRefused) {
+    write_flat("n.png", "128,128,255");
+    write_squares("high.glb", {R"({"name":"Skin","normalTexture":{"index":0}})"},
+                  R"(,"textures":[{"source":0}],"images":[{"uri":"n.png"}])");
+    write_squares("low.glb", {R"({"name":"Skin"})"}, "");
+    const std::string pair = "transfer-normals low.glb high.glb ";
+    refuses(pair + "-o low.glb", 2, "the output low.glb is the input low.glb");
+    refuses(pair + "-o high.glb", 2, "the output high.glb is the input high.glb");
+    does("ln high.glb hard.glb; ln -s low.glb soft.glb; mkdir out");
+    refuses(pair + "-o hard.glb", 2, "is the input");
+    refuses(pair + "-o soft.glb", 2, "is the input");
+    refuses(pair + "-o x.glb --depfile n.png", 2, "the output n.png is the input n.png");
+    refuses(pair + "-o x.glb --height-out h.png", 2, "--height-out is for one map, and not for models");
+    refuses(pair + "-o x.glb --cage low.glb", 2, "--cage is for one map, and not for models");
+    refuses(pair + "-o x.glb --mips all", 2, "models hold no levels");
+    refuses(pair + "-o x.glb --format bc5", 2, "models hold normals as");
+    refuses(pair + "-o x.gltf", 4, "is GLB, and so the output must be called .glb");
+    refuses(pair + "-o x.glb --material glass", 4, "has no material \"glass\"");
+    refuses("transfer-normals low.glb -o x.glb", 2, "no high mesh");
+    refuses(pair + "--material all --node a --out-dir out", 2, "--material all and --node contradict each other");
+    refuses(pair + "-o x.png --high-normals own --high-normals n.png", 2, "contradict each other");
+    scratch_.write("bad.glb", std::string("glTF\2\0\0\0", 8));
+    refuses("transfer-normals bad.glb high.glb -o x.glb", 4, "bad.glb: truncated");
+    refuses("transfer-normals low.glb bad.glb -o x.glb", 4, "bad.glb: truncated");
+    does(pair + "-o x.glb --quiet");
+    refuses(pair + "-o x.glb --no-clobber", 3, "exists, and --no-clobber is given");
+    scratch_.write("n.png", std::string("These are words."));
+    refuses(pair + "-o y.glb", 4, "n.png");
+}
+
+}  // namespace tex::cli

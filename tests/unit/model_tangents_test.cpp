@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// write_model() with tangents, and with maps for materials that had none.
+
+#include <tex/pipeline.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tex/mesh.h>
+#include <nlohmann/json.hpp>
+
+#include "scratch.h"
+#include "unit/gltf_files.h"
+
+namespace tex {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kMap = R"("materials":[{"name":"a","normalTexture":{"index":0,"scale":0.5,"texCoord":0,)"
+                             R"("extensions":{"KHR_texture_transform":{"scale":[2,2]}}}},{"name":"b"}],)"
+                             R"("textures":[{"source":0,"sampler":0}],"images":[{"bufferView":0,"mimeType":)"
+                             R"("image/png"}],"samplers":[{}],"extensionsUsed":["KHR_texture_transform"])";
+
+class ModelTangentsTest : public testing::Test, protected Scratch {
+protected:
+    // A strip of quads along x, with a picture in the first view. Neighbours share their corners.
+    static GltfMaker strip(int quads) {
+        GltfMaker maker;
+        maker.add_view(std::vector<char>{'p', 'i', 'c', 't', 'u', 'r', 'e', 's'});
+        std::vector<float> positions, normals, uvs;
+        std::vector<std::uint16_t> indices;
+        for (int k = 0; k <= quads; ++k) {
+            for (int j = 0; j < 2; ++j) {
+                positions.insert(positions.end(), {static_cast<float>(k), static_cast<float>(j), 0.0f});
+                normals.insert(normals.end(), {0.0f, 0.0f, 1.0f});
+                uvs.insert(uvs.end(),
+                           {static_cast<float>(k % 2), static_cast<float>(1 - j)});  // every other one mirrored
+            }
+        }
+        for (int k = 0; k < quads; ++k) {
+            const auto a = static_cast<std::uint16_t>(2 * k);
+            for (const int add : {0, 2, 3, 0, 3, 1}) indices.push_back(static_cast<std::uint16_t>(a + add));
+        }
+        maker.add(positions, "VEC3", 5126, R"(,"min":[0,0,0],"max":[)" + std::to_string(quads) + ",1,0]");
+        maker.add(normals, "VEC3", 5126);
+        maker.add(uvs, "VEC2", 5126);
+        maker.add(indices, "SCALAR", 5123);
+        return maker;
+    }
+    static std::string rest(const std::string& more) { return ",\"nodes\":[{\"mesh\":0}]," + more; }
+    Mesh mesh(const std::string& name) const {
+        auto read = read_mesh(path(name));
+        EXPECT_TRUE(read) << read.error().message();
+        return read ? std::move(*read) : Mesh{};
+    }
+    // The tangents of all parts, as MikkTSpace makes them.
+    ModelChanges made(const std::string& name) const {
+        ModelChanges changes;
+        for (const MeshPart& part : mesh(name).parts)
+            changes.tangents.push_back({part.mesh, part.primitive, *make_tangents(part)});
+        return changes;
+    }
+    json document(const std::string& name) const {
+        const std::string file = read(name);
+        std::uint32_t size = 0;
+        std::memcpy(&size, file.data() + 12, 4);
+        return json::parse(file.substr(20, size));
+    }
+    // Every corner of `after` is that of `before`, with these tangents.
+    static void same_corners(const MeshPart& before, const MeshPart& after, const std::vector<Float4>& tangents) {
+        ASSERT_EQ(after.indices.size(), before.indices.size());
+        ASSERT_EQ(after.tangents.size(), after.positions.size());
+        for (std::size_t c = 0; c < before.indices.size(); ++c) {
+            const std::size_t b = before.indices[c], a = after.indices[c];
+            EXPECT_EQ(std::memcmp(&before.positions[b], &after.positions[a], sizeof(Float3)), 0) << c;
+            EXPECT_EQ(std::memcmp(&before.normals[b], &after.normals[a], sizeof(Float3)), 0) << c;
+            EXPECT_EQ(std::memcmp(&before.uvs[0][b], &after.uvs[0][a], sizeof(Float2)), 0) << c;
+            EXPECT_EQ(std::memcmp(&tangents[c], &after.tangents[a], sizeof(Float4)), 0) << c;
+        }
+    }
+};
+
+TEST_F(ModelTangentsTest, PartsGetTangentsAndKeepTheirVertices) {
+    write("m.glb", strip(1).glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3})", rest(kMap)));
+    const ModelChanges changes = made("m.glb");
+    const auto written = write_model(path("m.glb"), path("out.glb"), changes);
+    ASSERT_TRUE(written) << written.error().message();
+    const MeshPart before = mesh("m.glb").parts.at(0), after = mesh("out.glb").parts.at(0);
+    same_corners(before, after, changes.tangents[0].tangents);
+    EXPECT_EQ(after.positions.size(), before.positions.size());
+    EXPECT_EQ(document("out.glb")["bufferViews"].size(), document("m.glb")["bufferViews"].size() + 1);
+    // A second time, the new tangents take the place of the old ones.
+    ModelChanges turned = changes;
+    for (Float4& t : turned.tangents[0].tangents) t = {0.0f, 1.0f, 0.0f, -1.0f};
+    ASSERT_TRUE(write_model(path("out.glb"), path("again.glb"), turned));
+    same_corners(before, mesh("again.glb").parts.at(0), turned.tangents[0].tangents);
+    EXPECT_EQ(document("again.glb")["accessors"].size(), document("out.glb")["accessors"].size());
+    EXPECT_EQ(read("again.glb").size(), read("out.glb").size());
+}
+
+// At a mirrored seam, both sides have other tangents, and so their common vertices become two.
+TEST_F(ModelTangentsTest, VerticesWithSeveralTangentsAreCopied) {
+    GltfMaker maker = strip(3);
+    const int moved = maker.add(std::vector<float>(24, 0.25f), "VEC3", 5126);
+    const std::string attributes = R"("attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2})";
+    const int strips = maker.add(std::vector<std::uint16_t>{0, 2, 1, 3}, "SCALAR", 5123);
+    write("m.glb", maker.glb("{" + attributes + R"(,"indices":3,"targets":[{"POSITION":)" + std::to_string(moved) +
+                                 "}]},{" + attributes + R"(,"mode":5,"indices":)" + std::to_string(strips) + "}",
+                             rest(kMap)));
+    const ModelChanges changes = made("m.glb");
+    const auto written = write_model(path("m.glb"), path("out.glb"), changes);
+    ASSERT_TRUE(written) << written.error().message();
+    const Mesh before = mesh("m.glb"), after = mesh("out.glb");
+    for (std::size_t k = 0; k < 2; ++k) same_corners(before.parts[k], after.parts.at(k), changes.tangents[k].tangents);
+    EXPECT_EQ(after.parts[0].positions.size(), 12u) << "four were shared by two sides";
+    const json now = document("out.glb"), primitive = now["meshes"][0]["primitives"][0];
+    for (const int accessor :
+         {primitive["attributes"]["POSITION"].get<int>(), primitive["attributes"]["TANGENT"].get<int>(),
+          primitive["targets"][0]["POSITION"].get<int>()})
+        EXPECT_EQ(now["accessors"][static_cast<std::size_t>(accessor)]["count"], 12) << accessor;
+    EXPECT_EQ(now["accessors"][0]["max"], document("m.glb")["accessors"][0]["max"]);
+}
+
+TEST_F(ModelTangentsTest, TangentsOfOtherTrianglesAreRefused) {
+    write("m.glb", strip(2).glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3})", rest(kMap)));
+    ModelChanges changes = made("m.glb");
+    changes.tangents[0].tangents.resize(6);
+    EXPECT_EQ(write_model(path("m.glb"), path("out.glb"), changes).error().code, ErrorCode::bad_option);
+    changes.tangents[0].tangents.clear();
+    EXPECT_TRUE(model_files(path("m.glb"), path("out.glb"), changes));
+    EXPECT_EQ(write_model(path("m.glb"), path("out.glb"), changes).error().code, ErrorCode::bad_option);
+    EXPECT_FALSE(has("out.glb"));
+}
+
+class ModelSlots : public ModelTangentsTest {
+protected:
+    json written(ModelChanges changes) {
+        const auto done = write_model(path("m.glb"), path("out.glb"), changes);
+        EXPECT_TRUE(done) << done.error().message();
+        return document("out.glb");
+    }
+    static ModelPicture picture(ModelMap map, Container container = Container::png) {
+        return {{map}, container, std::vector<std::byte>(5, std::byte{'x'}), true};
+    }
+    void SetUp() override {
+        write("m.glb",
+              strip(1).glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3})", rest(kMap)));
+    }
+};
+
+TEST_F(ModelSlots, MapsThatAreMadeForAModelReplaceScaleAndTransform) {
+    ModelMap map = read_model_maps(path("m.glb"))->maps.at(0);
+    map.scale = 1.0;
+    map.uv_transform = {};
+    const json now = written({{picture(map)}});
+    EXPECT_EQ(now["materials"][0]["normalTexture"], json::parse(R"({"index":0})"));
+    EXPECT_FALSE(now.contains("extensionsUsed")) << "nothing has a transform any more";
+}
+
+TEST_F(ModelSlots, AMaterialWithoutAMapGetsOne) {
+    ModelMap map;
+    map.material = 1;
+    map.uv_transform.scale_x = 15.5;
+    const json now = written({{picture(map)}});
+    const json slot = now["materials"][1]["normalTexture"];
+    EXPECT_EQ(slot["extensions"]["KHR_texture_transform"]["scale"], json::parse("[15.5,1]"));
+    EXPECT_EQ(now["textures"][slot["index"].get<std::size_t>()]["source"], 1);
+    EXPECT_EQ(now["images"][1]["mimeType"], "image/png");
+    EXPECT_EQ(now["materials"][0], document("m.glb")["materials"][0]);
+    // Only if it asks for that.
+    ModelPicture plain = picture(map);
+    plain.sets_slots = false;
+    EXPECT_EQ(write_model(path("m.glb"), path("no.glb"), {{plain}}).error().code, ErrorCode::bad_option);
+}
+
+TEST_F(ModelSlots, TwoMapsOfOneImageLeaveNoImageWithoutUse) {
+    json model = document("m.glb");
+    model["materials"][1] = model["materials"][0];
+    const std::string file = read("m.glb");
+    write("m.glb", GltfMaker::glb_of(model.dump(), file.substr(file.find("BIN") + 4)));
+    const std::vector<ModelMap> maps = read_model_maps(path("m.glb"))->maps;
+    const json now = written({{picture(maps.at(0)), picture(maps.at(1))}});
+    EXPECT_EQ(now["images"].size(), 2u);
+    EXPECT_EQ(now["textures"].size(), 2u);
+    EXPECT_NE(now["materials"][0]["normalTexture"]["index"], now["materials"][1]["normalTexture"]["index"]);
+    EXPECT_EQ(now["textures"][1]["sampler"], 0);
+}
+
+TEST_F(ModelSlots, WebpIsNamedByItsExtension) {
+    const ModelMap map = read_model_maps(path("m.glb"))->maps.at(0);
+    const json now = written({{picture(map, Container::webp)}});
+    EXPECT_EQ(now["textures"][0], json::parse(R"({"sampler":0,"extensions":{"EXT_texture_webp":{"source":0}}})"));
+    EXPECT_EQ(now["extensionsRequired"], json::parse(R"(["EXT_texture_webp"])"));
+    EXPECT_EQ(now["extensionsUsed"], json::parse(R"(["KHR_texture_transform","EXT_texture_webp"])"));
+    EXPECT_EQ(now["images"][0]["mimeType"], "image/webp");
+    // A PNG in its place needs no extension.
+    ASSERT_TRUE(write_model(path("out.glb"), path("png.glb"), {{picture(map)}}));
+    EXPECT_FALSE(document("png.glb").contains("extensionsRequired"));
+}
+
+}  // namespace
+}  // namespace tex
