@@ -38,7 +38,7 @@ SENTENCES = (
      "values must be finite, and are clamped to [0, 1]."),
     ("check", "; if there is a mesh, check_part() succeeds.", "."),
     ("check", "Errors: bad-option (an option is out of its range)", "Errors: bad-option (no such rule or requirement)"),
-    ("check_file", "the report has a finding, N101 or N114, and the Error. If the file cannot be opened, memory runs out "
+    ("check_file", "the report has a finding, N101, and the Error. If the file cannot be opened, memory runs out "
      "or the check is cancelled, the report has only 'error'. Errors: bad-option (an option is out of its range).",
      "that is raised, and so is everything else that reading raises.\n"
      "Errors: io, bad-data, unsupported, bad-option (no such rule or requirement), out-of-memory, cancelled."),

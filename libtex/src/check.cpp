@@ -202,7 +202,7 @@ CheckReport failed_report(const std::string& file, const CheckOptions& options, 
     report.error = error;
     if (error.code != ErrorCode::bad_data && error.code != ErrorCode::unsupported) return report;
     Findings findings(options);
-    findings.add(error.detail == ErrorDetail::uastc_without_alpha ? "N114" : "N101", error.reason);
+    findings.add("N101", error.reason);
     report.findings = findings.take(report.explained);
     return report;
 }

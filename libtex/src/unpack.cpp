@@ -10,6 +10,7 @@
 #include "formats/level_planes.h"
 #include "kernels/unpack.h"
 #include "rows/channel_names.h"
+#include "rows/codecs.h"
 #include "rows/decode_rows.h"
 #include "rows/extra_rows.h"
 #include "rows/stored_rows.h"
@@ -174,7 +175,11 @@ Result<std::array<const Plane<float>*, 4>> planes_of(const Image& image) {
 Result<MipChain> unpack_levels(const Texture& texture, const UnpackOptions& options, const Execution& execution) {
     const FormatInfo info = format_info(texture.format);
     const Result<Sources> sources = sources_of(options.swizzle.value_or(texture.swizzle), (1u << info.channels) - 1);
-    if (!sources) return sources.error();
+    if (!sources) {
+        Error error = sources.error();
+        if (has_basis_blocks(texture.format) && !options.swizzle) error.detail = ErrorDetail::uastc_without_alpha;
+        return error;
+    }
     UnpackRule rule = rule_of(options, info.sample, info.bits, options.y_axis.value_or(texture.y_axis));
     const ValueRange range = range_of(texture.normal_encoding, options);
     const Result<bool> biased =

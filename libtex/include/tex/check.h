@@ -324,8 +324,8 @@ struct ModelCheckOptions {
                                                                    const ReadOptions& read = {},
                                                                    const Execution& execution = {});
 
-// Reads a file and checks it. If its content cannot be read (bad_data, unsupported), the report has a finding, N101 or
-// N114, and the Error. If the file cannot be opened, memory runs out or the check is cancelled, the report has only
+// Reads a file and checks it. If its content cannot be read (bad_data, unsupported), the report has a finding, N101,
+// and the Error. If the file cannot be opened, memory runs out or the check is cancelled, the report has only
 // CheckReport::error. Errors: bad_option (see validate()).
 [[nodiscard]] TEX_API Result<CheckReport> check_file(const std::string& path, const CheckOptions& options = {},
                                                      const ReadOptions& read = {}, const Execution& execution = {});

@@ -242,13 +242,13 @@ TEX_API void remove_unfinished_files() noexcept;
 // that ATI's and NVIDIA's tools leave in dwRGBBitCount (xGxR, A2XY, A2D5, RxBG ...), uncompressed formats by masks (8,
 // 16, 24 and 32 bits) and by FourCC (36, 110 to 116), the DXGI formats of Format in their unorm, snorm, float, typeless
 // and sRGB forms. Missing header flags are accepted. Texture::remarks lists the faults that the reader ignored. KTX2:
-// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB. BasisLZ and UASTC are unsupported, data
-// format descriptors that contradict the VkFormat bad_data. KTX 1: the formats of Format in OpenGL's numbers. Of arrays
-// and cube maps, ReadOptions::layer is read; volumes are unsupported.
-// ATI2 with the code 'A2XY' holds x first, and so it does if the signature of GIMP or of NVIDIA's texture tools is in
-// the header. Without either, the file leaves the order open (Texture::order_open): 3Dc has y first (ATI 2005), nearly
-// all other writers x. EXR: all levels of a mip-mapped file; the base level only if the extents of the levels are
-// rounded up. Anything else is read as a picture: one level.
+// the VkFormats of Format, also with levels compressed by Zstandard or ZLIB; UASTC of low dynamic range, and ETC1S with
+// BasisLZ (without frames that follow others: animations are unsupported). Data format descriptors that contradict the
+// VkFormat are bad_data. KTX 1: the formats of Format in OpenGL's numbers. Of arrays and cube maps, ReadOptions::layer
+// is read; volumes are unsupported. ATI2 with the code 'A2XY' holds x first, and so it does if the signature of GIMP or
+// of NVIDIA's texture tools is in the header. Without either, the file leaves the order open (Texture::order_open): 3Dc
+// has y first (ATI 2005), nearly all other writers x. EXR: all levels of a mip-mapped file; the base level only if the
+// extents of the levels are rounded up. Anything else is read as a picture: one level.
 //
 // Every size computed from a header is checked against the file's length before memory is allocated. Errors: as
 // read_image().

@@ -31,6 +31,12 @@ namespace tex::inline v1 {
 //
 //   eac_r11   8 bytes: R, one EAC block of 11 bits              eac_rg11  16 bytes: R and G, two EAC blocks
 //   astc     16 bytes: RGBA, low dynamic range (Khronos Data Format Specification, ASTC)
+//
+//   uastc    16 bytes: RGBA of 4x4 texels, low dynamic range; blocks of ASTC in another form (Basis Universal)
+//   etc1s_rgb   8 bytes: RGB of 4x4 texels, one ETC1S block        etc1s_rgba  16 bytes: RGB, then A in the green of
+//                                                                             a second ETC1S block
+//
+// UASTC and ETC1S are read, not written. KTX2 stores ETC1S with BasisLZ, which is decoded to these blocks.
 enum class Format {
     bc1_unorm,
     bc2_unorm,
@@ -82,6 +88,9 @@ enum class Format {
     rg32_float,
     rgb32_float,
     rgba32_float,
+    uastc_4x4_unorm,
+    etc1s_rgb_unorm,
+    etc1s_rgba_unorm,
 };
 
 inline constexpr Named<Format> kFormatNames[] = {
@@ -135,6 +144,9 @@ inline constexpr Named<Format> kFormatNames[] = {
     {Format::rg32_float, "rg32-float", "2 x float"},
     {Format::rgb32_float, "rgb32-float", "3 x float"},
     {Format::rgba32_float, "rgba32-float", "4 x float"},
+    {Format::uastc_4x4_unorm, "uastc-4x4-unorm", "UASTC, blocks of 4x4 texels"},
+    {Format::etc1s_rgb_unorm, "etc1s-rgb-unorm", "ETC1S"},
+    {Format::etc1s_rgba_unorm, "etc1s-rgba-unorm", "ETC1S with alpha"},
 };
 
 // What a Format consists of.

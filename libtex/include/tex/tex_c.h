@@ -169,7 +169,10 @@ enum tex_format {
     TEX_FORMAT_R32_FLOAT = 46,
     TEX_FORMAT_RG32_FLOAT = 47,
     TEX_FORMAT_RGB32_FLOAT = 48,
-    TEX_FORMAT_RGBA32_FLOAT = 49
+    TEX_FORMAT_RGBA32_FLOAT = 49,
+    TEX_FORMAT_UASTC_4X4_UNORM = 50,
+    TEX_FORMAT_ETC1S_RGB_UNORM = 51,
+    TEX_FORMAT_ETC1S_RGBA_UNORM = 52
 };
 
 // How normals are stored: a format and what its channels hold. See Encoding in format.h.

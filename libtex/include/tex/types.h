@@ -94,7 +94,7 @@ enum class ErrorDetail {
     none,
     no_space,             // io: the disk, or the quota that the file counts towards, is full
     missing_heights,      // bad_data: some heights are missing, but not all (HeightOptions::fill_invalid fills them)
-    uastc_without_alpha,  // unsupported: a KTX2 file without the channel that y is transcoded from
+    uastc_without_alpha,  // a texture of Basis Universal (UASTC or ETC1S) of one channel, which is not y
     several_materials,    // bad_option: MeshSelection::material must choose one
     no_tangents,          // bad_option: the mesh has no tangents of its own (TangentSource)
     no_uvs,               // what was selected of the mesh has no UVs

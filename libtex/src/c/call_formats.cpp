@@ -10,12 +10,13 @@ namespace tex::inline v1 {
 namespace {
 
 // Numbers of C are those of the enumerators of C++ (those of encodings: rows/codecs.cpp).
-static_assert(std::size(kFormatNames) == TEX_FORMAT_RGBA32_FLOAT + 1 &&
+static_assert(std::size(kFormatNames) == TEX_FORMAT_ETC1S_RGBA_UNORM + 1 &&
               static_cast<int>(Format::bc1_unorm) == TEX_FORMAT_BC1_UNORM &&
               static_cast<int>(Format::bc7_unorm) == TEX_FORMAT_BC7_UNORM &&
               static_cast<int>(Format::astc_12x12_unorm) == TEX_FORMAT_ASTC_12X12_UNORM &&
               static_cast<int>(Format::r16_unorm) == TEX_FORMAT_R16_UNORM &&
-              static_cast<int>(Format::rgba32_float) == TEX_FORMAT_RGBA32_FLOAT);
+              static_cast<int>(Format::rgba32_float) == TEX_FORMAT_RGBA32_FLOAT &&
+              static_cast<int>(Format::etc1s_rgba_unorm) == TEX_FORMAT_ETC1S_RGBA_UNORM);
 static_assert(static_cast<int>(Component::z) == TEX_Z && static_cast<int>(Component::other) == TEX_OTHER);
 static_assert(static_cast<int>(SampleKind::floating) == TEX_FLOAT && static_cast<int>(Severity::error) == TEX_ERROR);
 

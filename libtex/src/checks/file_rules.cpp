@@ -125,6 +125,13 @@ void check_astc_layout(const CheckContext& context, Findings& findings) {
                  "the layout is " + layout_name(context.stored.swizzle) + " instead of " + layout_name(kSwizzleXxxy));
 }
 
+// UASTC and ETC1S of one channel: their descriptor says so.
+void check_basis_channels(const CheckContext& context, Findings& findings) {
+    if (!has_basis_blocks(context.texture.format) || context.stored.channel(Component::y) >= 0) return;
+    findings.add("N114", std::string(name_of(kFormatNames, context.texture.format)) +
+                             " of one channel: R, G and B hold the same values");
+}
+
 }  // namespace
 
 void check_file_rules(const CheckContext& context, Findings& findings) {
@@ -140,6 +147,7 @@ void check_file_rules(const CheckContext& context, Findings& findings) {
     check_extent(texture, require, findings);
     if (texture.srgb) findings.add("N111", format_text(texture, context.stored.swizzle) + ", as sRGB");
     check_astc_layout(context, findings);
+    check_basis_channels(context, findings);
     if (require.engine) check_engine(context, *require.engine, findings);
     if (require.y && texture.y_known && texture.y_axis != *require.y) {
         findings.add("N112", "the file says " + direction(texture.y_axis) + " instead of " + direction(*require.y));

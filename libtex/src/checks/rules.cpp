@@ -49,10 +49,9 @@ constexpr Rule kRules[] = {
      "levels, or decodes 2c - 1 where floats hold x, y and z themselves. Engines do not build levels for block formats.",
      "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
     {"N114", "uastc-without-alpha", file, error, true, "The file has no y.",
-     "Transcoders make x of BC5 and EAC RG11 from R, and y from A. Without alpha, y is 1 everywhere.",
-     "Encode the source again with x in R, G and B and y in A (toktx has --normal_mode for that), or bake or pack it "
-     "as BC5, EAC or ASTC.",
-     "N101"},
+     "A file of Basis Universal (UASTC, ETC1S) says which channels it has. This one has a single value for each texel, "
+     "which is x at best. Normal maps of glTF are RGB; others have x in R, G and B and y in A (RRRG).",
+     "Encode the source again with R, G and B.", ""},
     {"N115", "astc-layout", file, warning, true, "The channels are not those of ASTC normal maps.",
      "Encoders store x in R, G and B and y in A in their mode for normal maps (astcenc -normal), and shaders read them "
      "there. Compressed as colours, a map has y = 1 everywhere for such a shader, and three components share the bits "

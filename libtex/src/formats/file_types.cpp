@@ -9,6 +9,7 @@
 
 #include "formats/asc/asc.h"
 #include "formats/astc/astc_file.h"
+#include "formats/basis/basis_file.h"
 #include "formats/bil/bil.h"
 #include "formats/bmp/bmp.h"
 #include "formats/dds/dds.h"
@@ -77,6 +78,7 @@ constexpr FileType kFileTypes[] = {
      .layout = [](const TextureHead& head, const WriteOptions&) { return ktx2_layout(head); },
      .compress = compress_ktx2},
     {.magic = kLfsMagic, .open_rows = refuse_lfs_pointer},
+    {.magic = kBasisMagic, .open_rows = refuse_basis},
     {.claims = may_be_model, .open_rows = refuse_model},
     {.magic = kKtxMagic, .parse = parse_ktx, .has_layers = true},
     {.container = Container::astc,

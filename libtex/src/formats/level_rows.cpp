@@ -86,7 +86,7 @@ private:
 };
 
 void LevelRows::open_inflater(const StoredTexture::Level& place) {
-    inflater_ = LevelInflater::make(texture_->supercompression, fetch_from(file_), place, place.inflated);
+    inflater_ = LevelInflater::make(*texture_, fetch_from(file_), place);
 }
 
 Result<void> LevelRows::decode(int first, int count, std::byte* rows) {

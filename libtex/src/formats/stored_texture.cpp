@@ -67,7 +67,7 @@ Result<Texture> load_texture(ParseTexture parse, const std::byte* data, std::siz
         std::vector<std::byte> inflated;
         if (stored.supercompression != Supercompression::none) {
             inflated.resize(level.bytes.size());
-            const auto inflater = LevelInflater::make(stored.supercompression, fetch, place, place.inflated);
+            const auto inflater = LevelInflater::make(stored, fetch, place);
             if (const Result<void> done = inflater->read(place.skipped, inflated); !done) return done.error().of(name);
         }
         const std::byte* source = inflated.empty() ? data + place.offset : inflated.data();

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,9 @@ namespace tex::inline v1 {
 using FetchBytes = std::function<Result<std::vector<std::byte>>(std::uint64_t offset, std::size_t count)>;
 
 // How KTX2 compresses the bytes of each level.
-enum class Supercompression { none, zstd, zlib };
+enum class Supercompression { none, zstd, zlib, basis_lz };
+
+struct BasisCodebooks;
 
 struct StoredTexture {
     struct Level {
@@ -33,6 +36,9 @@ struct StoredTexture {
         // A compressed level's bytes with all layers, and those before the layer that is read.
         std::uint64_t inflated = 0;
         std::uint64_t skipped = 0;
+        // BasisLZ: the slice of alpha, if there is one; `offset` and `bytes` are those of the colours.
+        std::uint64_t alpha_offset = 0;
+        std::uint64_t alpha_bytes = 0;
     };
     Texture head;                       // without levels
     std::vector<Level> levels;          // all of their bytes are within the file
@@ -40,7 +46,8 @@ struct StoredTexture {
     bool bgr = false;                   // except that red and blue may be exchanged
     bool upwards = false;               // the bottom row comes first; never with blocks
     Supercompression supercompression = Supercompression::none;
-    std::size_t row_alignment = 1;  // rows begin at multiples of so many bytes
+    std::shared_ptr<const BasisCodebooks> codebooks;  // of BasisLZ
+    std::size_t row_alignment = 1;                    // rows begin at multiples of so many bytes
 };
 
 // The number of bytes that the file uses for a row of texels, or for a row of blocks, with those between the rows.

@@ -43,6 +43,8 @@ constexpr Codec kBc5 = {kKhrBc5, decode_blocks, encode_bc5_unorm, {HalfKind::bc4
 constexpr Codec kBc5Snorm = {kKhrBc5, decode_blocks, encode_bc5_snorm, {HalfKind::bc4_snorm, HalfKind::bc4_snorm}};
 constexpr Codec kBc6h = {.khr_model = kKhrBc6h, .decode = decode_row_of_bptc, .is_written = false};
 constexpr Codec kBc7 = {.khr_model = kKhrBc7, .decode = decode_row_of_bptc, .is_written = false};
+constexpr Codec kUastc = {.khr_model = kKhrUastc, .decode = decode_row_of_basis, .is_written = false};
+constexpr Codec kEtc1s = {.khr_model = kKhrEtc1s, .decode = decode_row_of_basis, .is_written = false};
 constexpr Codec kEac = {kKhrEtc2, decode_blocks, encode_eac_unorm, {HalfKind::eac_unorm, HalfKind::eac_unorm}};
 constexpr Codec kEacSnorm = {kKhrEtc2, decode_blocks, encode_eac_snorm, {HalfKind::eac_snorm, HalfKind::eac_snorm}};
 constexpr Codec kAstc = {.khr_model = kKhrAstc,
@@ -111,6 +113,9 @@ constexpr FormatRow kFormats[] = {
     {rg32_float, &kTexels, in_texels(kFloat, 32, 2), 115, {16, 0, 15}, {103}},
     {rgb32_float, &kTexels, in_texels(kFloat, 32, 3), 0, {6, 0, 5}, {106}},
     {rgba32_float, &kTexels, in_texels(kFloat, 32, 4), 116, {2, 0, 1}, {109}},
+    {uastc_4x4_unorm, &kUastc, {kUnorm, 4, 8, k4x4, 16}, 0, {}, {}},
+    {etc1s_rgb_unorm, &kEtc1s, {kUnorm, 3, 8, k4x4, 8}, 0, {}, {}},
+    {etc1s_rgba_unorm, &kEtc1s, {kUnorm, 4, 8, k4x4, 16}, 0, {}, {}},
 };
 
 constexpr Swizzle kXyz1 = {Component::x, Component::y, Component::z, Component::one};
@@ -188,6 +193,11 @@ std::optional<MarkedFormat> find_format(FormatNumbers FormatRow::*registry, std:
         if (number == numbers.srgb) return MarkedFormat{row.format, true};
     }
     return std::nullopt;
+}
+
+bool has_basis_blocks(Format format) {
+    const std::uint32_t model = format_row(format).codec->khr_model;
+    return model == kKhrUastc || model == kKhrEtc1s;
 }
 
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks) {

@@ -76,6 +76,9 @@ struct MarkedFormat {
 };
 [[nodiscard]] std::optional<MarkedFormat> find_format(FormatNumbers FormatRow::*registry, std::uint32_t number);
 
+// Whether blocks of the format are those of Basis Universal: UASTC, ETC1S.
+[[nodiscard]] bool has_basis_blocks(Format format);
+
 // Encodes a row of blocks of halves with all options that concern blocks: effort and, except in EAC, metric.
 void encode_blocks(const BlockRow& row, const PackOptions& options, std::byte* blocks);
 
@@ -103,5 +106,7 @@ inline constexpr std::uint32_t kKhrBc6h = 133;
 inline constexpr std::uint32_t kKhrBc7 = 134;
 inline constexpr std::uint32_t kKhrEtc2 = 161;  // including EAC
 inline constexpr std::uint32_t kKhrAstc = 162;
+inline constexpr std::uint32_t kKhrEtc1s = 163;
+inline constexpr std::uint32_t kKhrUastc = 166;  // of low dynamic range
 
 }  // namespace tex::inline v1

@@ -10,7 +10,9 @@
 #include "blocks/astc_decode.h"
 #include "blocks/bc6h.h"
 #include "blocks/bc7.h"
+#include "blocks/etc1s.h"
 #include "blocks/extent.h"
+#include "blocks/uastc.h"
 #include "kernels/samples.h"
 #include "rows/codecs.h"
 
@@ -40,6 +42,31 @@ void decode_row_of_bptc(Format format, const std::byte* blocks, int width, const
             decode_samples(info.sample, info.bits, texels + c * sample_bytes, texel_bytes, kTexels, values);
             for (int j = 0; j < kBlockEdge; ++j)
                 std::memcpy(rows.channel[c] + j * stride + at, values + j * kBlockEdge, kBlockEdge * sizeof(float));
+        }
+    }
+}
+
+// UASTC and ETC1S, whose codes are of 8 bits.
+void decode_row_of_basis(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
+                         std::ptrdiff_t stride) {
+    constexpr int kTexels = kBlockEdge * kBlockEdge;
+    const std::size_t block_bytes = format_info(format).block_bytes;
+    std::uint8_t codes[4][kTexels];
+    std::uint8_t* wanted[4];
+    for (int c = 0; c < 4; ++c) wanted[c] = rows.channel[c] == nullptr ? nullptr : codes[c];
+    for (std::ptrdiff_t at = 0; at < width; at += kBlockEdge, blocks += block_bytes) {
+        if (format == Format::uastc_4x4_unorm) {
+            decode_uastc(blocks, codes);
+        } else {
+            decode_etc1s(blocks, wanted);
+            std::uint8_t* const alpha[3] = {nullptr, wanted[3], nullptr};
+            if (format == Format::etc1s_rgba_unorm) decode_etc1s(blocks + kEtc1sBlockBytes, alpha);
+        }
+        for (int c = 0; c < format_info(format).channels; ++c) {
+            if (rows.channel[c] == nullptr) continue;
+            float* const out = rows.channel[c] + at;
+            for (int k = 0; k < kTexels; ++k)
+                out[k / kBlockEdge * stride + k % kBlockEdge] = static_cast<float>(codes[c][k]) / 255.0f;
         }
     }
 }

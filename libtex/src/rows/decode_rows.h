@@ -18,6 +18,8 @@ void decode_row(Format format, const std::byte* from, int width, const ChannelRo
 // For formats of these codecs. For all other blocks, see kernels/decode.h.
 void decode_row_of_bptc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                         std::ptrdiff_t stride);
+void decode_row_of_basis(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
+                         std::ptrdiff_t stride);
 void decode_row_of_astc(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                         std::ptrdiff_t stride);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -13,6 +14,8 @@
 
 #include "formats/bytes.h"
 #include "formats/channels.h"
+#include "formats/ktx2/basis_levels.h"
+#include "formats/ktx2/basis_texels.h"
 #include "formats/ktx2/key_values.h"
 #include "formats/ktx2/ktx2_descriptor.h"
 #include "formats/ktx2/level_inflater.h"
@@ -90,12 +93,12 @@ struct Ktx2Header {
 };
 
 constexpr std::uint32_t kFaces = 6;
-constexpr std::uint32_t kBasisLz = 1;  // a scheme that needs a transcoder
 
 // The schemes that can be read (KTX 2.0, 3.2).
 std::optional<Supercompression> find_scheme(std::uint32_t scheme) {
     switch (scheme) {
         case 0: return Supercompression::none;
+        case 1: return Supercompression::basis_lz;
         case 2: return Supercompression::zstd;
         case 3: return Supercompression::zlib;
         default: return std::nullopt;
@@ -109,12 +112,7 @@ Ktx2Header parse_header(const std::byte* data) {
 }
 
 Result<Extent> check_header(const Ktx2Header& header, const std::string& name, const ReadOptions& options) {
-    if (header.supercompression == kBasisLz)
-        return unsupported(name, "BasisLZ is not supported; \"ktx transcode --target bc5\" makes a file that is");
-    if (!find_scheme(header.supercompression)) {
-        return unsupported(name,
-                           "supercompression scheme " + std::to_string(header.supercompression) + " is not supported");
-    }
+    if (!find_scheme(header.supercompression)) return unknown_scheme(header.supercompression).of(name);
     if (header.faces != 1 && header.faces != kFaces) return bad_data(name, std::to_string(header.faces) + " faces");
     if (header.depth > 1) return unsupported(name, "volume textures are not supported");
     if (header.height == 0) return unsupported(name, "one-dimensional textures are not supported");
@@ -131,6 +129,29 @@ Result<void> apply_descriptor(const Ktx2Descriptor& descriptor, std::uint32_t vk
         texture.remarks.push_back(vk_text + " says sRGB, but the data format descriptor says linear");
     texture.srgb = texture.srgb || descriptor.states_srgb();
     return {};
+}
+
+// What the texels are: those of the VkFormat, or of Basis Universal. Errors: bad_data, unsupported.
+Result<void> describe_texels(const std::optional<VkRow>& row, const std::optional<Ktx2Descriptor>& descriptor,
+                             StoredTexture& stored) {
+    Texture& texture = stored.head;
+    texture.x_in_grey = true;
+    if (!row) {
+        const Result<BasisTexels> texels = basis_texels(descriptor, stored.supercompression);
+        if (!texels) return texels.error();
+        texture.format = texels->format;
+        texture.swizzle = texels->swizzle;
+        texture.swizzle_known = texels->swizzle_known;
+        texture.srgb = descriptor->states_srgb();
+        return {};
+    }
+    if (stored.supercompression == Supercompression::basis_lz)
+        return Error{ErrorCode::bad_data, {}, "BasisLZ holds no texels of VkFormat " + std::to_string(row->vk)};
+    stored.bgr = row->bgr;
+    texture.format = row->format;
+    texture.swizzle = likely_swizzle(row->format);
+    texture.srgb = row->srgb;
+    return descriptor ? apply_descriptor(*descriptor, row->vk, texture) : Result<void>();
 }
 
 // KTXswizzle names the stored channel that a shader reads as R, G, B and A: "ag01" means that A holds x and G holds y.
@@ -298,14 +319,15 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const bool is_cube = header.faces == kFaces;
     const LayerCount count{std::uint64_t{std::max<std::uint32_t>(header.layers, 1)} * header.faces, is_cube};
     const std::optional<VkRow> row = find_vk_format(header.vk_format);
-    if (!row && header.vk_format != 0)
-        return unsupported(name, "VkFormat " + std::to_string(header.vk_format) + " is not supported");
+    if (!row && header.vk_format != 0) return unknown_vk_format(header.vk_format).of(name);
     StoredTexture stored;
+    stored.supercompression = *find_scheme(header.supercompression);
     Texture& texture = stored.head;
     const Result<std::optional<Ktx2Descriptor>> descriptor =
         read_descriptor(fetch, size, header.descriptor_offset, header.descriptor_bytes, texture.remarks);
     if (!descriptor) return descriptor.error();
-    if (!row) return no_vk_format(*descriptor).of(name);
+    if (const Result<void> described = describe_texels(row, *descriptor, stored); !described)
+        return described.error().of(name);
     const Result<std::uint64_t> layer = chosen_layer(count, name, options);
     if (!layer) return layer.error();
     const auto levels = std::max<std::uint32_t>(1, header.levels);  // 0: the reader generates the other levels
@@ -320,27 +342,27 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     const Result<std::vector<std::byte>> index = fetch(kHeaderBytes, levels * kLevelIndexBytes);
     if (!index) return index.error();
 
-    stored.bgr = row->bgr;
-    stored.supercompression = *find_scheme(header.supercompression);
-    texture.format = row->format;
-    texture.swizzle = likely_swizzle(row->format);
-    texture.x_in_grey = true;
-    texture.srgb = row->srgb;
-    if (*descriptor) {
-        const Result<void> agrees = apply_descriptor(**descriptor, row->vk, texture);
-        if (!agrees) return agrees.error().of(name);
-    }
     const Result<bool> upwards = apply_key_values(fetch, size, header, texture);
     if (!upwards) return upwards.error();
     stored.upwards = *upwards;
-    if (stored.upwards && format_info(row->format).has_blocks()) {
+    if (stored.upwards && format_info(texture.format).has_blocks()) {
         return unsupported(name, "blocks whose rows run upwards (KTXorientation) are not supported");
     }
+    const ClaimedBytes global = {header.global_offset, header.global_bytes};
+    if (stored.supercompression == Supercompression::basis_lz) {
+        Result<std::shared_ptr<const BasisCodebooks>> books =
+            read_basis_global(fetch, size, global, std::uint64_t{levels} * count.layers);
+        if (!books) return books.error().of(name);
+        stored.codebooks = std::move(*books);
+    }
     for (std::size_t k = 0; k < levels; ++k) {
+        const std::byte* const entry = index->data() + k * kLevelIndexBytes;
+        const Extent of_level = level_extent(*extent, static_cast<int>(k));
         const Result<StoredTexture::Level> place =
-            place_of(index->data() + k * kLevelIndexBytes, size, k, {count.layers, *layer}, stored,
-                     level_extent(*extent, static_cast<int>(k)), name);
-        if (!place) return place.error();
+            stored.codebooks != nullptr ? basis_level(fetch, size, global, k * count.layers + *layer,
+                                                      {load_u64(entry), load_u64(entry + 8)}, of_level, texture.format)
+                                        : place_of(entry, size, k, {count.layers, *layer}, stored, of_level, name);
+        if (!place) return place.error().of(name);
         stored.levels.push_back(*place);
     }
     if (stored.supercompression == Supercompression::none) remark_on_sizes(*index, levels, texture);

@@ -20,10 +20,6 @@ namespace tex::inline v1 {
 
 inline constexpr std::string_view kKtx2Magic = "\xabKTX 20\xbb\r\n\x1a\n";
 
-// The reason of the error for UASTC whose texels have no alpha.
-inline constexpr std::string_view kUastcWithoutAlpha =
-    "UASTC without alpha is not supported; transcoders would make y from alpha";
-
 // Formats of three channels with 16 or 32 bits are widened. If the swizzle is known, the key "libtex.normal" holds it:
 // "dxt5nm" or the four letters of to_string(), followed by a blank and "+y" or "-y" if the direction of y is known.
 [[nodiscard]] FileLayout ktx2_layout(const TextureHead& head);

@@ -13,6 +13,7 @@
 #include <zstd_errors.h>
 
 #include "formats/bytes.h"
+#include "formats/ktx2/basis_inflater.h"
 #include "formats/ktx2/compress_ktx2.h"
 #include "formats/size_limits.h"
 
@@ -153,10 +154,13 @@ Result<void> ZlibInflater::inflate() {
 
 }  // namespace
 
-std::unique_ptr<LevelInflater> LevelInflater::make(Supercompression scheme, FetchBytes fetch,
-                                                   const StoredTexture::Level& place, std::uint64_t decoded) {
-    if (scheme == Supercompression::zlib) return std::make_unique<ZlibInflater>(std::move(fetch), place, decoded);
-    return std::make_unique<ZstdInflater>(std::move(fetch), place, decoded);
+std::unique_ptr<LevelInflater> LevelInflater::make(const StoredTexture& texture, FetchBytes fetch,
+                                                   const StoredTexture::Level& place) {
+    switch (texture.supercompression) {
+        case Supercompression::basis_lz: return make_basis_inflater(texture, std::move(fetch), place);
+        case Supercompression::zlib: return std::make_unique<ZlibInflater>(std::move(fetch), place, place.inflated);
+        default: return std::make_unique<ZstdInflater>(std::move(fetch), place, place.inflated);
+    }
 }
 
 Result<void> LevelInflater::read(std::uint64_t offset, std::span<std::byte> bytes) {

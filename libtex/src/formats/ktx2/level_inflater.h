@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// level_inflater.h: reads compressed levels of KTX2 files: Zstandard (RFC 8878) and ZLIB (RFC 1950).
+// level_inflater.h: reads compressed levels of KTX2 files: Zstandard (RFC 8878), ZLIB (RFC 1950) and BasisLZ.
 
 #pragma once
 
@@ -17,13 +17,13 @@
 namespace tex::inline v1 {
 
 // The bytes of one level of a compressed file. Zstandard is decoded as a stream, so that only its window is in memory;
-// ZLIB is decoded as a whole. A level that holds too few or too many bytes is an error, and nothing is allocated for
-// bytes beyond its extent.
+// of BasisLZ, the compressed slices and a row of blocks are; ZLIB is decoded as a whole. A level that holds too few or
+// too many bytes is an error, and nothing is allocated for bytes beyond its extent.
 class LevelInflater {
 public:
-    // `decoded` is the number of bytes of the level. Throws std::bad_alloc.
-    static std::unique_ptr<LevelInflater> make(Supercompression scheme, FetchBytes fetch,
-                                               const StoredTexture::Level& place, std::uint64_t decoded);
+    // `texture` is that of the level, and is compressed. Throws std::bad_alloc.
+    static std::unique_ptr<LevelInflater> make(const StoredTexture& texture, FetchBytes fetch,
+                                               const StoredTexture::Level& place);
     LevelInflater(const LevelInflater&) = delete;
     LevelInflater& operator=(const LevelInflater&) = delete;
     virtual ~LevelInflater() = default;

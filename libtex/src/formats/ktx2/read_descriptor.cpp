@@ -7,14 +7,12 @@
 #include <utility>
 
 #include "formats/bytes.h"
-#include "formats/ktx2/ktx2.h"
 #include "rows/codecs.h"
 
 namespace tex::inline v1 {
 namespace {
 
 constexpr std::uint32_t kFirstBlockModel = 128;  // models below are of single texels
-constexpr std::uint32_t kKhrUastc = 166;
 
 struct KhrModel {
     std::uint32_t number;
@@ -23,18 +21,10 @@ struct KhrModel {
 
 // From khr_df.h.
 constexpr KhrModel kKhrModels[] = {
-    {kKhrBc1, "BC1"},          {kKhrBc2, "BC2"}, {kKhrBc3, "BC3"},     {kKhrBc4, "BC4"},   {kKhrBc5, "BC5"},
-    {kKhrBc6h, "BC6H"},        {kKhrBc7, "BC7"}, {160, "ETC1"},        {163, "ETC1S"},     {164, "PVRTC"},
+    {kKhrBc1, "BC1"},          {kKhrBc2, "BC2"}, {kKhrBc3, "BC3"},     {kKhrBc4, "BC4"},     {kKhrBc5, "BC5"},
+    {kKhrBc6h, "BC6H"},        {kKhrBc7, "BC7"}, {160, "ETC1"},        {kKhrEtc1s, "ETC1S"}, {164, "PVRTC"},
     {kKhrEtc2, "ETC2 or EAC"}, {165, "PVRTC2"},  {kKhrUastc, "UASTC"}, {kKhrAstc, "ASTC"},
 };
-
-std::string model_text(std::uint32_t model) {
-    if (model == kKhrRgbsda) return "texels without compression";
-    for (const KhrModel& row : kKhrModels) {
-        if (row.number == model) return std::string(row.name);
-    }
-    return "colour model " + std::to_string(model);
-}
 
 std::string edges_text(const std::array<int, 4>& edges) {
     std::string text = std::to_string(edges[0]) + "x" + std::to_string(edges[1]);
@@ -56,17 +46,25 @@ bool same_edges(const std::array<int, 4>& stated, Format format) {
 
 }  // namespace
 
+std::string khr_model_text(std::uint32_t model) {
+    if (model == kKhrRgbsda) return "texels without compression";
+    for (const KhrModel& row : kKhrModels) {
+        if (row.number == model) return std::string(row.name);
+    }
+    return "colour model " + std::to_string(model);
+}
+
 Result<std::optional<Ktx2Descriptor>> read_descriptor(const FetchBytes& fetch, std::size_t size, std::uint32_t offset,
                                                       std::uint32_t bytes, std::vector<std::string>& remarks) {
     constexpr std::size_t kVendor = 4, kModel = 12, kTransfer = 14, kEdges = 16, kBlockBytes = 20, kSamples = 28,
-                          kFirstChannel = 31, kWithSample = 44;
+                          kFirstChannel = 31, kSampleBytes = 16, kWithSamples = 60;
     if (bytes == 0) {
         remarks.emplace_back("there is no data format descriptor");
         return std::optional<Ktx2Descriptor>();
     }
     std::vector<std::byte> data;
     if (bytes >= kSamples && offset <= size && bytes <= size - offset) {
-        Result<std::vector<std::byte>> fetched = fetch(offset, std::min<std::size_t>(bytes, kWithSample));
+        Result<std::vector<std::byte>> fetched = fetch(offset, std::min<std::size_t>(bytes, kWithSamples));
         if (!fetched) return fetched.error();
         data = std::move(*fetched);
     }
@@ -80,7 +78,8 @@ Result<std::optional<Ktx2Descriptor>> read_descriptor(const FetchBytes& fetch, s
     descriptor.transfer = number(kTransfer);
     for (std::size_t k = 0; k < 4; ++k) descriptor.edges[k] = static_cast<int>(number(kEdges + k)) + 1;
     descriptor.block_bytes = number(kBlockBytes);
-    if (data.size() == kWithSample) descriptor.channel = number(kFirstChannel) & 15u;
+    for (std::size_t k = 0; k < 2 && data.size() >= kSamples + (k + 1) * kSampleBytes; ++k)
+        descriptor.channels[k] = number(kFirstChannel + k * kSampleBytes) & 15u;
     return std::optional(descriptor);
 }
 
@@ -89,7 +88,7 @@ Result<void> check_descriptor(const Ktx2Descriptor& descriptor, std::uint32_t vk
     const std::string unit = info.has_blocks() ? "block" : "texel";
     std::string stated, wanted;
     if (!same_model(descriptor.model, format)) {
-        stated = model_text(descriptor.model);
+        stated = khr_model_text(descriptor.model);
     } else if (!same_edges(descriptor.edges, format)) {
         stated = "blocks of " + edges_text(descriptor.edges) + " texels";
     } else if (descriptor.block_bytes != 0 && descriptor.block_bytes != info.block_bytes) {
@@ -102,23 +101,6 @@ Result<void> check_descriptor(const Ktx2Descriptor& descriptor, std::uint32_t vk
                  {},
                  "its data format descriptor says " + stated + ", but VkFormat " + std::to_string(vk) + " is " +
                      std::string(name_of(kFormatNames, format)) + wanted + "; export the texture again"};
-}
-
-Error no_vk_format(const std::optional<Ktx2Descriptor>& descriptor) {
-    constexpr std::uint32_t kRgb = 0, kRrr = 4;  // KHR_DF_CHANNEL_UASTC_...
-    const auto unsupported_as = [](std::string reason) { return Error{ErrorCode::unsupported, {}, std::move(reason)}; };
-    if (!descriptor || descriptor->model == 0)
-        return unsupported_as(
-            "neither VkFormat nor a data format descriptor says what its texels are; export the "
-            "texture again");
-    constexpr std::uint32_t kEtc1s = 163;
-    if (descriptor->model == kKhrUastc && (descriptor->channel == kRgb || descriptor->channel == kRrr))
-        return {ErrorCode::unsupported, {}, std::string(kUastcWithoutAlpha), ErrorDetail::uastc_without_alpha};
-    const std::string name = model_text(descriptor->model);
-    if (descriptor->model == kKhrUastc || descriptor->model == kEtc1s)
-        return unsupported_as(name + " is not supported; \"ktx transcode --target bc5\" makes a file that is");
-    return unsupported_as("its data format descriptor says " + name +
-                          ", but VkFormat is 0, undefined; export the texture with a VkFormat");
 }
 
 }  // namespace tex::inline v1

@@ -19,11 +19,11 @@ namespace tex::inline v1 {
 
 // The basic block of a descriptor (Khronos Data Format Specification 1.3, section 5).
 struct Ktx2Descriptor {
-    std::uint32_t model = 0;                  // khr_df_model_e; 0: not stated
-    std::uint32_t transfer = 0;               // khr_df_transfer_e; 0: not stated
-    std::array<int, 4> edges = {1, 1, 1, 1};  // of a texel block
-    std::uint32_t block_bytes = 0;            // 0: not stated, as by files with supercompression
-    std::optional<std::uint32_t> channel;     // of the first sample, without its qualifiers
+    std::uint32_t model = 0;                               // khr_df_model_e; 0: not stated
+    std::uint32_t transfer = 0;                            // khr_df_transfer_e; 0: not stated
+    std::array<int, 4> edges = {1, 1, 1, 1};               // of a texel block
+    std::uint32_t block_bytes = 0;                         // 0: not stated, as by files with supercompression
+    std::array<std::optional<std::uint32_t>, 2> channels;  // of the first samples, without their qualifiers
 
     [[nodiscard]] bool states_srgb() const { return transfer == 2; }
     [[nodiscard]] bool states_linear() const { return transfer == 1; }
@@ -40,7 +40,7 @@ struct Ktx2Descriptor {
 // writers get them wrong. Errors: bad_data, without the name of the file.
 [[nodiscard]] Result<void> check_descriptor(const Ktx2Descriptor& descriptor, std::uint32_t vk, Format format);
 
-// Why a file without a VkFormat cannot be read, without its name.
-[[nodiscard]] Error no_vk_format(const std::optional<Ktx2Descriptor>& descriptor);
+// What a khr_df_model_e is called.
+[[nodiscard]] std::string khr_model_text(std::uint32_t model);
 
 }  // namespace tex::inline v1
