@@ -14,12 +14,13 @@ ExtraSet can_hold(Encoding encoding) {
     const auto [format, swizzle] = encoding_info(encoding);
     const FormatInfo info = format_info(format);
     const bool has_z = swizzle[2] == Component::z;
-    return {has_z, info.channels == 4 && !info.has_blocks() && swizzle[3] == Component::one, has_z};
+    const bool has_texels = !info.has_blocks();
+    return {has_z && has_texels, info.channels == 4 && swizzle[3] == Component::one, has_z && has_texels};
 }
 
 bool can_optimise(Encoding encoding) {
     const Codec& codec = codec_of(encoding);
-    return codec.encode_halves != nullptr || codec.whole != nullptr;
+    return codec.encode_halves != nullptr || (codec.whole != nullptr && codec.whole->optimise != nullptr);
 }
 
 float steepest_slope(Encoding encoding) {

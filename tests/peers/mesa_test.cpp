@@ -84,6 +84,14 @@ TEST(Mesa, SamplesEveryLevelOfBc5AsWeDecodeIt) {
     }
 }
 
+TEST(Mesa, SamplesEveryLevelOfBc7AsWeDecodeIt) {
+    ASSERT_TRUE(peers::software_gl_works());
+    for (const tex::Extent extent : peers::kExtents) {
+        expect_same_texels(extent, tex::Encoding::bc7, tex::DdsHeader::legacy);
+        expect_same_texels(extent, tex::Encoding::bc7, tex::DdsHeader::dx10);
+    }
+}
+
 // Mesa widens the 11 bits to 16 by repeating the highest ones (to 15 and a sign for snorm).
 int code_of(float value, tex::SampleKind sample) {
     const int code =

@@ -51,6 +51,10 @@ TEST(OpenImageIo, ReadsBc5AsWeDecodeIt) {
     expect_same_texels(peers::bumpy_texture({129, 66}, tex::Encoding::bc5), options, "bc5.dds");
 }
 
+TEST(OpenImageIo, ReadsBc7AsWeDecodeIt) {
+    expect_same_texels(peers::bumpy_texture({129, 66}, tex::Encoding::bc7), {}, "bc7.dds");
+}
+
 TEST(OpenImageIo, ReadsUncompressedTexturesAsWeDecodeThem) {
     for (const tex::Encoding encoding : {tex::Encoding::rgb8, tex::Encoding::rgba8, tex::Encoding::ag8}) {
         expect_same_texels(peers::bumpy_texture({37, 20}, encoding), {},

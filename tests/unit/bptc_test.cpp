@@ -49,8 +49,8 @@ TEST(Bptc, ABlockOfOneColourHasItExactly) {
     for (const auto& texel : rgba) EXPECT_TRUE(std::equal(texel, texel + 4, color));
 }
 
-TEST(Bptc, IsReadAndNotWritten) {
-    for (const Format format : {Format::bc6h_ufloat, Format::bc6h_sfloat, Format::bc7_unorm}) {
+TEST(Bptc, Bc6hIsReadAndNotWritten) {
+    for (const Format format : {Format::bc6h_ufloat, Format::bc6h_sfloat}) {
         Texture texture;
         texture.format = format;
         texture.levels.push_back({{4, 4}, std::vector<std::byte>(16)});

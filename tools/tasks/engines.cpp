@@ -25,15 +25,16 @@ constexpr Container kUnityTypes[] = {png, tiff, tga, bmp, jpeg, exr, dds};
 constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, dxt5nm, bc5};
 // Godot's materials rebuild z from R and G.
 constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, webp, exr, dds, ktx2};
-constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8};
+constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8, bc7};
 constexpr Container kGltfTypes[] = {png, jpeg};
 constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 // KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
+constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc7};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
-constexpr Encoding kBevyEncodings[] = {bc5,   eac_rg11, rg8,    rg16,   rgb8,    rgba8,
-                                       rgb16, half,     float_, rgba16, rgba16f, rgba32f};
+constexpr Encoding kBevyEncodings[] = {bc5,  eac_rg11, rg8,    rg16,    rgb8,    rgba8, rgb16,
+                                       half, float_,   rgba16, rgba16f, rgba32f, bc7};
 constexpr Container kPhoneTypes[] = {ktx2};
 constexpr Encoding kPhoneEncodings[] = {eac_rg11, eac_rg11_snorm, astc_4x4, astc_5x4, astc_5x5, astc_6x5, astc_6x6,
                                         astc_8x5, astc_8x6,       astc_8x8, rg8,      rgb8,     rgba8};
@@ -67,7 +68,7 @@ constexpr Engine kEngines[] = {
     {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
-     kThreeTypes, kRgb, RoughnessUse::green},
+     kThreeTypes, kThreeEncodings, RoughnessUse::green},
     // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
     // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
     {"three-packed", ktx2, bc5, YAxis::up, true, "",

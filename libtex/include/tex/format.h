@@ -27,7 +27,7 @@ namespace tex::inline v1 {
 //
 //   bc6h 16 bytes: RGB, half floats, unsigned or signed            bc7  16 bytes: RGBA
 //
-// BC6H and BC7 are read, not written (Khronos Data Format Specification, BPTC).
+// BC6H is read, not written. Both: Khronos Data Format Specification, BPTC.
 //
 //   eac_r11   8 bytes: R, one EAC block of 11 bits              eac_rg11  16 bytes: R and G, two EAC blocks
 //   astc     16 bytes: RGBA, low dynamic range (Khronos Data Format Specification, ASTC)
@@ -228,7 +228,8 @@ enum class Encoding {
     float_,
     rgba16,
     rgba16f,
-    rgba32f
+    rgba32f,
+    bc7
 };
 
 inline constexpr Named<Encoding> kEncodingNames[] = {
@@ -256,6 +257,7 @@ inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::rgba16, "rgba16", "x, y, z and A = 1 with 16 bits each"},
     {Encoding::rgba16f, "rgba16f", "x, y, z and A = 1 as 16-bit floats"},
     {Encoding::rgba32f, "rgba32f", "x, y, z and A = 1 as 32-bit floats"},
+    {Encoding::bc7, "bc7", "BC7, x, y, z and A = 1"},
 };
 
 struct EncodingInfo {
@@ -266,10 +268,12 @@ struct EncodingInfo {
 [[nodiscard]] TEX_API EncodingInfo encoding_info(Encoding encoding);
 
 // What an encoding can hold beside normals: blue in the place of z, alpha in the place of a constant, and data in the
-// length of vectors whose z is stored; so blue and length exclude each other.
+// length of vectors whose z is stored; so blue and length exclude each other. Of encodings with blocks, only bc7 can
+// hold any: alpha.
 [[nodiscard]] TEX_API ExtraSet can_hold(Encoding encoding);
 
-// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks.
+// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks of x and y
+// alone, so not bc7.
 [[nodiscard]] TEX_API bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface

@@ -44,17 +44,33 @@ constexpr std::array<std::uint8_t, 64> kSecondAnchors = {
     3,  6, 6, 8,  15, 3,  15, 15, 15, 15, 15, 15, 15, 15, 15, 15, 3,  15, 15, 8,
 };
 
+// Bit k is texel k; by number of subsets, partition and subset.
+constexpr auto kTexels = [] {
+    std::array<std::array<std::array<std::uint16_t, 3>, 64>, 2> texels = {};
+    for (std::size_t partition = 0; partition < 64; ++partition) {
+        for (unsigned texel = 0; texel < 16; ++texel) {
+            const auto bit = static_cast<std::uint16_t>(1u << texel);
+            texels[0][partition][kTwoSubsets[partition] >> texel & 1u] |= bit;
+            texels[1][partition][kThreeSubsets[partition] >> (2 * texel) & 3u] |= bit;
+        }
+    }
+    return texels;
+}();
+
 constexpr std::array<std::uint8_t, 4> kWeights2 = {0, 21, 43, 64};
 constexpr std::array<std::uint8_t, 8> kWeights3 = {0, 9, 18, 27, 37, 46, 55, 64};
 constexpr std::array<std::uint8_t, 16> kWeights4 = {0, 4, 9, 13, 17, 21, 26, 30, 34, 38, 43, 47, 51, 55, 60, 64};
 
-bool is_anchor(int subsets, unsigned partition, unsigned texel) {
-    if (texel == 0) return true;
-    if (subsets == 2) return texel == kAnchors[partition];
-    return subsets == 3 && (texel == kFirstAnchors[partition] || texel == kSecondAnchors[partition]);
+}  // namespace
+
+unsigned bptc_texels(int subsets, unsigned partition, int subset) {
+    return kTexels[static_cast<std::size_t>(subsets - 2)][partition][static_cast<std::size_t>(subset)];
 }
 
-}  // namespace
+unsigned bptc_anchors(int subsets, unsigned partition) {
+    if (subsets == 2) return 1u | 1u << kAnchors[partition];
+    return subsets == 3 ? 1u | 1u << kFirstAnchors[partition] | 1u << kSecondAnchors[partition] : 1u;
+}
 
 unsigned bptc_subset(int subsets, unsigned partition, unsigned texel) {
     if (subsets == 2) return kTwoSubsets[partition] >> texel & 1u;
@@ -65,8 +81,9 @@ void read_bptc_weights(BptcBits& bits, int subsets, unsigned partition, int inde
     const std::uint8_t* const table = index_bits == 2   ? kWeights2.data()
                                       : index_bits == 3 ? kWeights3.data()
                                                         : kWeights4.data();
+    const unsigned anchors = bptc_anchors(subsets, partition);
     for (unsigned texel = 0; texel < 16; ++texel)
-        weights[texel] = table[bits.take(index_bits - (is_anchor(subsets, partition, texel) ? 1 : 0))];
+        weights[texel] = table[bits.take(index_bits - static_cast<int>(anchors >> texel & 1u))];
 }
 
 }  // namespace tex::inline v1

@@ -37,6 +37,12 @@ private:
 // The subset, from 0, to which a texel (row-major) belongs.
 [[nodiscard]] unsigned bptc_subset(int subsets, unsigned partition, unsigned texel);
 
+// The texels of a subset of two or three: bit k is texel k.
+[[nodiscard]] unsigned bptc_texels(int subsets, unsigned partition, int subset);
+
+// The texels whose indices lack their highest bits, which are 0.
+[[nodiscard]] unsigned bptc_anchors(int subsets, unsigned partition);
+
 // Reads the indices of all texels, of 2, 3 or 4 bits, as the weights of the second endpoint, 0 to 64.
 void read_bptc_weights(BptcBits& bits, int subsets, unsigned partition, int index_bits, std::uint8_t weights[16]);
 

@@ -34,7 +34,7 @@ std::size_t scratch_of(const WholeBlocks& codec, const PackOptions& options, int
     const Format format = encoding_info(options.encoding).format;
     const int rows = codec.rows_at_once(format, width);
     ScratchSize size;
-    size.vector<float>(std::int64_t{2} * width * rows * format_info(format).block.height);
+    size.vector<float>(std::int64_t{codec.values} * width * rows * format_info(format).block.height);
     return size.bytes() + codec.memory(format, options.effort, width, rows);
 }
 
@@ -46,20 +46,23 @@ void encode_whole_blocks(const WholeBlocks& codec, const tex_map& map, const Pac
     const std::size_t row_bytes = level_bytes(format, {map.width, 1});
     for (int top = first; top < end; top += together) {
         const int count = std::min(together, end - top);
-        WorkingVector<float> xy(2 * static_cast<std::size_t>(map.width) * static_cast<std::size_t>(count));
-        float* to = xy.data();
+        const std::ptrdiff_t of_row = std::ptrdiff_t{codec.values} * map.width;
+        WorkingVector<float> texels(static_cast<std::size_t>(of_row * count));
+        float* to = texels.data();
         for (int j = top; j < top + count; ++j) {
             const NormalRow row = row_of(map, j);
             for (int i = 0; i < map.width; ++i) {
                 *to++ = row.x[i];
                 *to++ = side * row.y[i];
+                if (codec.values == 2) continue;
+                *to++ = row.z[i];
+                *to++ = 1.0f;
             }
         }
         // Rows of blocks may lie apart: they are encoded one by one then.
         const int step = pitch == row_bytes ? count : block;
         for (int j = 0; j < count; j += step) {
-            codec.encode(format, options.effort, xy.data() + 2 * static_cast<std::ptrdiff_t>(map.width) * j,
-                         {map.width, std::min(step, count - j)},
+            codec.encode(format, options.effort, texels.data() + of_row * j, {map.width, std::min(step, count - j)},
                          out + static_cast<std::size_t>((top + j) / block) * pitch);
         }
     }

@@ -30,7 +30,9 @@ void check_lengths(const CheckContext& context, Findings& findings) {
         (context.background && context.background->texels > 0 ? kNullShareBesideGrey : kNullShare)) {
         add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
-    if (!context.options.any_length && counts.share(Property::off_length) > kOffLengthShare) {
+    // Encoders of BC7 that look at directions leave lengths as they come.
+    const bool is_free = context.options.any_length || context.texture.format == Format::bc7_unorm;
+    if (!is_free && counts.share(Property::off_length) > kOffLengthShare) {
         add_counted(context, findings, "N201", Property::off_length,
                     " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
                         ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +

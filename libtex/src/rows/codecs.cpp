@@ -9,6 +9,7 @@
 
 #include "kernels/angle_search.h"
 #include "kernels/encode_astc.h"
+#include "kernels/encode_bc7.h"
 #include "rows/decode_rows.h"
 #include "rows/rdo_rows.h"
 
@@ -22,8 +23,17 @@ constexpr SampleKind kSnorm = SampleKind::snorm;
 constexpr SampleKind kFloat = SampleKind::floating;
 constexpr Extent k4x4 = {kBlockEdge, kBlockEdge};
 
-constexpr WholeBlocks kAstcBlocks = {encode_astc,      encode_astc_luminance, optimise_astc_band, prepare_astc,
-                                     is_astc_prepared, astc_memory,           astc_rows_at_once};
+constexpr WholeBlocks kAstcBlocks = {
+    2,           encode_astc,      encode_astc_luminance, optimise_astc_band, prepare_astc, is_astc_prepared,
+    astc_memory, astc_rows_at_once};
+constexpr WholeBlocks kBc7Blocks = {.values = 4,
+                                    .encode = encode_bc7,
+                                    .encode_values = nullptr,
+                                    .optimise = nullptr,
+                                    .prepare = [](Format, Effort) {},
+                                    .is_prepared = [](Format, Effort) { return true; },
+                                    .memory = bc7_memory,
+                                    .rows_at_once = bc7_rows_at_once};
 
 void decode_row_of_texels(Format format, const std::byte* texels, int width, const ChannelRows& rows, std::ptrdiff_t) {
     decode_texels(format, texels, width, rows);
@@ -42,7 +52,7 @@ constexpr Codec kBc4Snorm = {kKhrBc4, decode_blocks, encode_bc5_snorm, {HalfKind
 constexpr Codec kBc5 = {kKhrBc5, decode_blocks, encode_bc5_unorm, {HalfKind::bc4_unorm, HalfKind::bc4_unorm}};
 constexpr Codec kBc5Snorm = {kKhrBc5, decode_blocks, encode_bc5_snorm, {HalfKind::bc4_snorm, HalfKind::bc4_snorm}};
 constexpr Codec kBc6h = {.khr_model = kKhrBc6h, .decode = decode_row_of_bptc, .is_written = false};
-constexpr Codec kBc7 = {.khr_model = kKhrBc7, .decode = decode_row_of_bptc, .is_written = false};
+constexpr Codec kBc7 = {.khr_model = kKhrBc7, .decode = decode_row_of_bptc, .whole = &kBc7Blocks};
 constexpr Codec kUastc = {.khr_model = kKhrUastc, .decode = decode_row_of_basis, .is_written = false};
 constexpr Codec kEtc1s = {.khr_model = kKhrEtc1s, .decode = decode_row_of_basis, .is_written = false};
 constexpr Codec kEac = {kKhrEtc2, decode_blocks, encode_eac_unorm, {HalfKind::eac_unorm, HalfKind::eac_unorm}};
@@ -152,6 +162,7 @@ constexpr EncodingRow kEncodings[] = {
     {Encoding::rgba16, TEX_ENCODING_RGBA16, {rgba16_unorm, kXyz1}},
     {Encoding::rgba16f, TEX_ENCODING_RGBA16F, {rgba16_float, kXyz1}},
     {Encoding::rgba32f, TEX_ENCODING_RGBA32F, {rgba32_float, kXyz1}},
+    {Encoding::bc7, TEX_ENCODING_BC7, {bc7_unorm, kXyz1}},
 };
 
 static_assert([] {

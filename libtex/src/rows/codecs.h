@@ -19,10 +19,13 @@ namespace tex::inline v1 {
 
 class RdoTally;
 
-// Encodes blocks in which x and y share what a block has: see kernels/encode_astc.h.
+// Encodes blocks in which all components share what a block has: see kernels/encode_astc.h and kernels/encode_bc7.h.
 struct WholeBlocks {
-    void (*encode)(Format format, Effort effort, const float* xy, Extent extent, std::byte* blocks);
+    int values;  // of a texel: 2 are x and y; 4 are x, y, z and alpha
+    void (*encode)(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
+    // Encodes one channel; null if there is no such encoder.
     void (*encode_values)(Format format, Effort effort, const float* values, Extent extent, std::byte* blocks);
+    // Null if blocks cannot be optimised.
     void (*optimise)(const float* xy, int height, Extent level, int first, const PackOptions& options,
                      std::byte* blocks, RdoTally* tally);  // see optimise_astc_band()
     void (*prepare)(Format format, Effort effort);

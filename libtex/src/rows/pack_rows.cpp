@@ -81,29 +81,33 @@ void pack_rows_of_texels(const Rows& rows, const FormatInfo& info, int begin, in
     }
 }
 
-// Packs `count` rows of texels from row j into blocks that encode x and y together. pack_rows() explains the other
-// arguments.
+float value_of(const PackChannel& channel, int i) {
+    if (channel.values == nullptr) return 1.0f;
+    return channel.negate ? -channel.values[i] : channel.values[i];
+}
+
+// Packs `count` rows of texels from row j into blocks that encode all components together. pack_rows() explains the
+// other arguments.
 void pack_whole_blocks(const WholeBlocks& codec, const Rows& rows, const PackOptions& options, int j, int count,
                        std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
     const Format format = encoding_info(options.encoding).format;
     const int width = rows.extent().width;
-    std::vector<float> xy(2 * size(width) * size(count));
-    float* to = xy.data();
+    std::vector<float> texels(size(codec.values) * size(width) * size(count));
+    float* to = texels.data();
     NormalMap scratch;
     for (int k = j; k < j + count; ++k) {
         PackChannel from[4];
         rows.channels(k, from, scratch);
-        const auto& [x, y] = std::pair(from[0], from[3]);
+        if (codec.values == 2) from[1] = from[3];  // y
         for (int i = 0; i < width; ++i) {
-            *to++ = x.values[i];
-            *to++ = y.negate ? -y.values[i] : y.values[i];
+            for (int c = 0; c < codec.values; ++c) *to++ = value_of(from[c], i);
         }
     }
-    codec.encode(format, options.effort, xy.data(), {width, count}, out);
+    codec.encode(format, options.effort, texels.data(), {width, count}, out);
     if (!is_optimised(options)) return;
     if (plain != nullptr) std::memcpy(plain, out, level_bytes(format, {width, count}));
     for (int k = 0; k < count; k += bands.rows) {
-        const float* const band = xy.data() + 2 * size(width) * size(k);
+        const float* const band = texels.data() + size(codec.values) * size(width) * size(k);
         codec.optimise(band, std::min(bands.rows, count - k), bands.level, bands.first + j + k, options,
                        out + level_bytes(format, {width, k}), tally);
     }

@@ -78,6 +78,10 @@ void pack_halves(const ChannelRow& rows, const FormatRow& format, Effort effort,
     }
 }
 
+bool encodes_values(const FormatRow& row) {
+    return row.codec->whole != nullptr && row.codec->whole->encode_values != nullptr;
+}
+
 void pack_whole_blocks(const ChannelRow& rows, const FormatRow& format, Effort effort, int begin, int end,
                        std::byte* out) {
     const auto width = static_cast<std::size_t>(rows.width());
@@ -110,7 +114,7 @@ Code code_of(float value) {
 void pack(const ChannelRow& rows, Format format, Effort effort, int begin, int end, std::byte* out) {
     const FormatRow& row = format_row(format);
     const auto& [sample, channels, bits, block, block_bytes] = row.info;
-    if (row.codec->whole != nullptr) return pack_whole_blocks(rows, row, effort, begin, end, out);
+    if (encodes_values(row)) return pack_whole_blocks(rows, row, effort, begin, end, out);
     if (row.codec->encode_halves != nullptr) return pack_halves(rows, row, effort, begin, end, out);
     if (sample == SampleKind::floating && bits == 16)
         return pack_samples<Imath::half>(
@@ -127,13 +131,12 @@ void pack(const ChannelRow& rows, Format format, Effort effort, int begin, int e
 bool holds_roughness(Format format) {
     const FormatRow& row = format_row(format);
     const bool has_halves = row.codec->encode_halves != nullptr && row.info.channels <= 2;
-    return row.info.sample != SampleKind::snorm &&
-           (!row.info.has_blocks() || has_halves || row.codec->whole != nullptr);
+    return row.info.sample != SampleKind::snorm && (!row.info.has_blocks() || has_halves || encodes_values(row));
 }
 
 bool is_single_roughness(Format format) {
     const FormatRow& row = format_row(format);
-    return holds_roughness(format) && (row.info.channels == 1 || row.codec->whole != nullptr);
+    return holds_roughness(format) && (row.info.channels == 1 || encodes_values(row));
 }
 
 void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,
