@@ -28,7 +28,7 @@ struct OutputRules {
     std::function<void(std::vector<Task>& tasks)> relate = {};      // called with all tasks of a command; may be empty
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
     bool writes_models = false;              // such inputs can become models again: outputs that are called so
-    // Those outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
+    // Such outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
     std::optional<std::optional<TangentSource>> lods = {};
     std::vector<std::string> not_for_models = {};  // options without a meaning for such outputs
     // Inputs are meshes, and each of their materials gets an output: this returns them as inputs. May be empty.

@@ -40,7 +40,7 @@ struct ModelOutput {
 // those that it writes, which it returns. `material` is empty for all of them. What is wrong with the model becomes its
 // error.
 std::vector<ModelFile> set_model_output(Task& task, const std::string& material, const MeshReadOptions& options);
-// The same for a model whose materials get maps that are made for it, as materials_of_model() lists them.
+// Does so for a model whose materials get maps that are made for it, as materials_of_model() lists them.
 // `tangents` are those of --tangents.
 std::vector<ModelFile> set_lod_output(Task& task, const std::string& material, std::optional<TangentSource> tangents,
                                       const MeshReadOptions& options);
