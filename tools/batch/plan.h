@@ -29,7 +29,7 @@ struct OutputRules {
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
     bool writes_models = false;              // such inputs can become models again: outputs that are called so
     bool keeps_maps = false;                 // of such models, some maps may stay as they are
-    // Those outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
+    // Such outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
     std::optional<std::optional<TangentSource>> lods = {};
     std::vector<std::string> not_for_models = {};  // options without a meaning for such outputs
     // Inputs are meshes, and each of their materials gets an output: this returns them as inputs. May be empty.

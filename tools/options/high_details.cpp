@@ -77,8 +77,8 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
     command.group("Pictures on the high mesh");
     Row& row =
         add_files(command, normals_, "--high-normals",
-                  "its own normal map, of all parts or of those with this material; may be repeated; or the word");
-    row.words = {{"own", "those of its materials (glTF); the default if the output is a model"}, {"off", "none"}};
+                  "its own normal map, of all parts or of those with this material; may be repeated; own: those of its "
+                  "materials (glTF); off: none");
     row.preset = "off; of a model, own";
     row.take = [this, take = row.take](const std::string& text) {
         if (text == "own" || text == "off")

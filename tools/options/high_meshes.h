@@ -37,7 +37,7 @@ struct HighParts {
     std::vector<MeshPart> parts;
     std::vector<std::string> materials;  // their names; may be empty
     std::vector<bool> has_maps;          // whether the material of a part has a normal map
-    // That map, if the parts were read for it, and it is in a model: their UVs lie where it puts them. Else null.
+    // The map, if the parts were read for it, and it is in a model: their UVs lie where it puts them. Else null.
     std::vector<std::shared_ptr<const ModelInput>> maps;
     std::vector<int> files;            // the number of the file
     std::vector<PartPlace> places;     // where they stand; empty: where they are stored (TransferInputs::high_places)

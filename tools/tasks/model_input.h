@@ -54,7 +54,7 @@ struct ModelInput {
     [[nodiscard]] Result<void> open(ReadOptions& options) const;
     // The triangles that a new map of the material is made for, where the scene places them.
     [[nodiscard]] MeshSelection selection(const Model& model) const;
-    // Those of them whose tangents are made, and not those of the file.
+    // Such triangles whose tangents are made, and are not those of the file.
     [[nodiscard]] std::vector<const MeshPart*> parts_without(const Model& model,
                                                              std::optional<TangentSource> tangents) const;
     // What --json says about the map.

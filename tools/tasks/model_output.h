@@ -46,7 +46,7 @@ struct ModelOutput {
 // their files. `material` is that of maps_to_write(). What is wrong with the model becomes its error.
 std::vector<ModelFile> set_model_output(Task& task, const std::string& material, bool may_keep,
                                         const MeshReadOptions& options);
-// The same for a model whose materials get maps that are made for it, as materials_of_model() lists them.
+// Does so for a model whose materials get maps that are made for it, as materials_of_model() lists them.
 // `tangents` are those of --tangents.
 std::vector<ModelFile> set_lod_output(Task& task, const std::string& material, std::optional<TangentSource> tangents,
                                       const MeshReadOptions& options);

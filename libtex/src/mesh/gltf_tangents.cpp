@@ -265,7 +265,7 @@ Result<void> GltfTangents::collect_attributes(const Vertices& vertices, std::siz
         const auto values = buffers_.accessor(old.accessor);
         if (!values) return values.error();
         if ((*values)->count != vertices.count) return bad_gltf("an attribute has another number of elements");
-        const std::size_t size = (*values)->element_size(), stride = (size + 3) / 4 * 4;
+        const std::size_t size = (*values)->element_size(), stride = size + (4 - size % 4) % 4;
         if (auto fits = charge(vertices.tangents.size(), stride); !fits) return fits;
         Array array;
         array.buffer = buffer;
