@@ -154,7 +154,9 @@ void Maker::files() {
     write("N112-wrong-declared-y.ktx2", encoded(packed(part(16, 16), Encoding::rgba8, YAxis::down), Container::ktx2));
     dds("N113-unfit-for-engine", packed(part(128, 128), Encoding::bc5));
     // UASTC as toktx writes it of grey pictures: each block has one colour, and the mode of such blocks.
-    bytes = encoded(packed(part(16, 16), Encoding::bc5), Container::ktx2);
+    Texture texture = packed(part(16, 16), Encoding::bc5);
+    texture.swizzle_known = texture.y_known = false;
+    bytes = encoded(texture, Container::ktx2);
     const auto descriptor = std::to_integer<std::size_t>(bytes[48]);
     bytes[12] = bytes[13] = std::byte{0};     // VK_FORMAT_UNDEFINED
     bytes[descriptor + 12] = std::byte{166};  // KHR_DF_MODEL_UASTC
