@@ -153,17 +153,15 @@ void Maker::files() {
     write("N111-srgb-format.dds", bytes);
     write("N112-wrong-declared-y.ktx2", encoded(packed(part(16, 16), Encoding::rgba8, YAxis::down), Container::ktx2));
     dds("N113-unfit-for-engine", packed(part(128, 128), Encoding::bc5));
-    // UASTC as toktx writes it of grey pictures: each block has one colour, and the mode of such blocks.
-    bytes = encoded(packed(part(16, 16), Encoding::bc5), Container::ktx2);
+    Texture texture = packed(part(16, 16), Encoding::bc5);
+    texture.swizzle_known = texture.y_known = false;
+    bytes = encoded(texture, Container::ktx2);
     const auto descriptor = std::to_integer<std::size_t>(bytes[48]);
     bytes[12] = bytes[13] = std::byte{0};     // VK_FORMAT_UNDEFINED
     bytes[descriptor + 12] = std::byte{166};  // KHR_DF_MODEL_UASTC
     bytes[descriptor + 31] = std::byte{4};    // KHR_DF_CHANNEL_UASTC_RRR
-    for (std::size_t at = std::to_integer<std::size_t>(bytes[80]) | std::to_integer<std::size_t>(bytes[81]) << 8, k = 0;
-         at < bytes.size(); at += 16, ++k) {
-        std::uint64_t block = 0x17 | std::uint64_t{0xff} << 29;
-        for (int c = 0; c < 3; ++c) block |= std::uint64_t{64 + 8 * k} << (5 + 8 * c);
-        for (std::size_t b = 0; b < 16; ++b) bytes[at + b] = static_cast<std::byte>(b < 8 ? block >> (8 * b) & 255 : 0);
+    for (std::size_t at = bytes.size() - 16 * 16; at < bytes.size(); at += 16) {
+        for (std::size_t b = 0; b < 16; ++b) bytes[at + b] = std::byte{b == 0 ? 0x17u : b < 5 ? 0xfeu - at % 7 : 0u};
     }
     write("N114-uastc-without-alpha.ktx2", bytes);
     write("N115-astc-layout.astc", encoded(astc_colors(part(16, 16)), Container::astc));

@@ -16,8 +16,9 @@ constexpr std::size_t kDescriptorAt = 48, kTransfer = 14, kChannel = 31;
 
 // A triangle with a material whose normal map is texture 0.
 std::string model_with(const std::string& textures, const std::string& images) {
-    return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_texture_basisu"],"meshes":[{"primitives":[{"attributes":)"
-           R"({"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"material":0}]}],"nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
+    return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_texture_basisu"],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"material":0}]}],)"
+           R"("nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],)"
            R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},)"
            R"({"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},)"
            R"({"bufferView":2,"componentType":5126,"count":3,"type":"VEC2"}],"bufferViews":[)"
@@ -47,7 +48,7 @@ protected:
     }
     // The ids of what check-normals finds, with blanks between them.
     std::string found(const std::string& file) {
-        const Ran ran = shell(scratch_, "check-normals --json --disable N106,N105,N403,N701 " + file);
+        const Ran ran = shell(scratch_, "check-normals --json --disable N106 --disable N701 " + file);
         std::string ids;
         const auto report = nlohmann::json::parse(ran.out, nullptr, false);
         if (report.is_discarded()) return ran.out + ran.err;
@@ -89,8 +90,7 @@ TEST_F(Basis, CommandsConvertThem) {
         const std::string file = name + ".ktx2";
         EXPECT_EQ(shell(scratch_, "unpack-normals " + file + " -o " + name + ".exr").code, 0) << name;
         EXPECT_EQ(shell(scratch_, "pack-normals " + file + " -o " + name + ".dds --format bc5").code, 0) << name;
-        EXPECT_EQ(shell(scratch_, "pack-normals " + file + " -o " + name + ".png --format rgb8 --level 1").code, 0)
-            << name;
+        EXPECT_EQ(shell(scratch_, "pack-normals " + file + " -o " + name + ".png --format rgb8").code, 0) << name;
         const Ran compared = shell(scratch_, "compare-normals " + file + " " + name + ".exr --max-mean 0.1");
         EXPECT_EQ(compared.code, 0) << compared.out << compared.err;
     }

@@ -85,19 +85,21 @@ TEST(Basis, RowsAreThoseOfTheWholeTexture) {
         auto file = InputFile::from_memory("test.ktx2", made(name));
         ASSERT_TRUE(file);
         const auto whole = read(made(name));
-        const auto rows = read_all(open_texture_rows(*file, {}));
+        const auto rows = open_texture_rows(*file, {});
         ASSERT_TRUE(whole && rows) << name;
         for (std::size_t k = 0; k < whole->levels.size(); ++k) {
             const auto image = decode(*whole, static_cast<int>(k));
-            auto again = open_texture_rows(*file, {});
-            ASSERT_TRUE(image && again);
-            const auto level = again->levels[k]->read_all();
-            ASSERT_TRUE(level) << name;
-            for (std::size_t c = 0; c < image->planes.size(); ++c) {
-                for (int j = 0; j < image->extent().height; ++j)
-                    EXPECT_TRUE(std::equal(image->planes[c].row(j), image->planes[c].row(j) + image->extent().width,
-                                           level->planes[c].row(j)));
-            }
+            ASSERT_TRUE(image);
+            const auto compare = [&](const Image& part, int first, int count) -> Result<void> {
+                for (std::size_t c = 0; c < image->planes.size(); ++c) {
+                    for (int j = 0; j < count; ++j) {
+                        const float* const row = image->planes[c].row(first + j);
+                        EXPECT_TRUE(std::equal(row, row + image->extent().width, part.planes[c].row(j))) << name;
+                    }
+                }
+                return {};
+            };
+            EXPECT_TRUE(rows->levels[k]->visit("test.ktx2", compare)) << name;
         }
     }
 }

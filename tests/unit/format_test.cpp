@@ -27,7 +27,8 @@ TEST(Format, HasOneNameAndSoundFactsForEachFormat) {
             EXPECT_EQ(info.block_bytes * 8, static_cast<std::size_t>(info.channels * info.bits)) << row.name;
         }
     }
-    EXPECT_EQ(format_info(Format::etc1s_rgba_unorm).block_bytes, 16u);  // the table includes the last format of the enum
+    // The table includes the last format of the enum.
+    EXPECT_EQ(format_info(Format::etc1s_rgba_unorm).block_bytes, 16u);
     EXPECT_EQ(name_of(kFormatNames, Format::etc1s_rgba_unorm), "etc1s-rgba-unorm");
 }
 
