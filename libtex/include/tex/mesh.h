@@ -47,8 +47,7 @@ struct Float4 {
 // Triangles that share a material: a primitive of glTF, or the faces of one object and material of OBJ.
 //
 // positions, normals, tangents, colors and each set of uvs have one element for each vertex. Normals, tangents and
-// colours may be missing (empty), and there may be no set of UVs. Normals are as stored, so they may differ from unit
-// length.
+// colours may be missing (empty), and there may be no set of UVs. Normals are as stored, of any length.
 struct MeshPart {
     std::string name;   // of the mesh (glTF) or object (OBJ); may be empty
     int mesh = 0;       // parts of the same mesh of the file have the same number
@@ -128,8 +127,7 @@ inline constexpr std::size_t kMaxTriangles = std::size_t{1} << 28;
 // Errors: bad_data, with the first violation ("index 8 of triangle 3 is out of range: there are 8 vertices").
 [[nodiscard]] TEX_API Result<void> check_part(const MeshPart& part);
 
-// The part with the UVs of a set where a material puts them. Errors: bad_option (there is no such set), bad_data (the
-// UVs become infinite), out_of_memory.
+// The part with the UVs of a set where a material puts them. Errors: bad_option (no such set), bad_data (infinite UVs).
 [[nodiscard]] TEX_API Result<MeshPart> with_moved_uvs(MeshPart part, int uv_set, const UvTransform& transform);
 
 // The part as it stands in the scene. Positions are multiplied by the matrix; normals by its inverse transpose, then
@@ -235,8 +233,7 @@ struct SelectedPiece {
     std::size_t triangle = 0;  // the first one; the others follow up to that of the next piece
 };
 
-// The chosen parts, joined. The part has one set of UVs, in which the transform is applied, normals, and no tangents of
-// vertices.
+// The chosen parts, joined. The part has one set of UVs, moved by the transform, normals, and no tangents of vertices.
 struct SelectedPart {
     MeshPart part;
     std::vector<Float4> tangents;  // one for each element of part.indices
@@ -832,8 +829,7 @@ struct Model {
 // Errors: those of read_mesh(); unsupported (the file is not glTF; it is "-").
 [[nodiscard]] TEX_API Result<Model> read_model(const std::string& path, const MeshReadOptions& options = {});
 
-// Reads no geometry: of the mesh, the materials alone. Errors: those of read_model() that do not come from
-// geometry.
+// Reads no geometry: of the mesh, the materials alone. Errors: those of read_model() without geometry.
 [[nodiscard]] TEX_API Result<Model> read_model_maps(const std::string& path, const MeshReadOptions& options = {});
 
 // The material and the image of a map, as messages name them: "Leather: leather_n.png"; "2 (clearcoat): image 3".
