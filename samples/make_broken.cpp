@@ -160,9 +160,8 @@ void Maker::files() {
     bytes[12] = bytes[13] = std::byte{0};     // VK_FORMAT_UNDEFINED
     bytes[descriptor + 12] = std::byte{166};  // KHR_DF_MODEL_UASTC
     bytes[descriptor + 31] = std::byte{4};    // KHR_DF_CHANNEL_UASTC_RRR
-    for (std::size_t at = bytes.size() - 16 * 16; at < bytes.size(); at += 16) {
-        for (std::size_t b = 0; b < 16; ++b) bytes[at + b] = std::byte{b == 0 ? 0x17u : b < 5 ? 0xfeu - at % 7 : 0u};
-    }
+    for (std::size_t k = 256; k > 0; --k)
+        bytes[bytes.size() - k] = static_cast<std::byte>(k % 16 == 0 ? 0x17 : k % 16 > 11 ? 0xfe - k / 16 : 0);
     write("N114-uastc-without-alpha.ktx2", bytes);
     write("N115-astc-layout.astc", encoded(astc_colors(part(16, 16)), Container::astc));
     write("N116-turned-by-tag.tif", turned_tiff(codes_of(part(32, 32))));
