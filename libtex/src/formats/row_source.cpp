@@ -34,6 +34,16 @@ void RowSource::describe_mark(std::string mark) {
     if (!strength_) normal_mark_ = std::move(mark);
 }
 
+// Stores the last rows of a picture where there is room for whole blocks, and copies them.
+static void store_last(const RowSource& source, const std::byte* rows, int first, int count, Image& image) {
+    Image last = make_image({image.extent().width, source.held_rows(count)}, image.names);
+    source.store(rows, 0, count, last);
+    for (std::size_t k = 0; k < image.planes.size(); ++k) {
+        for (int j = 0; j < count; ++j)
+            std::copy_n(last.planes[k].row(j), image.extent().width, image.planes[k].row(first + j));
+    }
+}
+
 Result<Image> RowSource::read_all() {
     Image image = make_image(extent(), names());
     image.sample = sample();
@@ -49,7 +59,11 @@ Result<Image> RowSource::read_all() {
     for (int j = 0; j < extent().height; j += rows_together()) {
         const int count = std::min(rows_together(), extent().height - j);
         if (const Result<void> decoded = decode(j, count, rows.data()); !decoded) return decoded.error();
-        store(rows.data(), j, j + count, image);
+        if (j + held_rows(count) <= extent().height) {
+            store(rows.data(), j, j + count, image);
+        } else {
+            store_last(*this, rows.data(), j, count, image);
+        }
     }
     if (const Result<void> ended = finish(); !ended) return ended.error();
     return image;
