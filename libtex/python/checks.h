@@ -30,7 +30,7 @@ void each_judging_field(Judging& o, F& f) {
 struct Checking : Judging {
     py::object height = py::none(), mesh = py::none();
     bool any_length = false;
-    std::optional<Swizzle> swizzle;
+    std::optional<Swizzle> swizzle = {};
     Decoder decoder = Decoder::gltf;
 };
 

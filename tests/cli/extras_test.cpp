@@ -18,7 +18,7 @@ namespace {
 
 class Extras : public testing::Test {
 protected:
-    Others() {
+    Extras() {
         std::filesystem::copy_file(TEX_SOURCE_DIR "/samples/bricks.png", scratch_.path("h.png"));
         run("bake-normals h.png -o n.png --bumpiness 6");
         run("preview-normals n.png -o ao.png --show lit --size 512 --no-legend");

@@ -21,9 +21,9 @@
 namespace tex {
 namespace {
 
-constexpr Effort kEfforts[] = {Effort::fast, Effort::normal, Effort::best};
+constexpr Effort kBc7Efforts[] = {Effort::fast, Effort::normal, Effort::best};
 
-std::size_t index(int n) { return static_cast<std::size_t>(n); }
+std::size_t place_of(int n) { return static_cast<std::size_t>(n); }
 
 // Waves, edges and noise. `alpha`: waves beside them in some blocks, else 1.
 std::vector<float> bumps(Extent extent, bool alpha, float least_z) {
@@ -50,22 +50,22 @@ std::vector<std::byte> encoded(Effort effort, const std::vector<float>& texels, 
     return blocks;
 }
 
-struct Errors {
+struct Bc7Errors {
     double angle = 0;  // the mean, in degrees
     double alpha = 0;  // root mean square, in codes
     int least_alpha = 255;
 };
 
-Errors errors_of(const std::vector<std::byte>& blocks, const std::vector<float>& texels, Extent extent) {
+Bc7Errors errors_of(const std::vector<std::byte>& blocks, const std::vector<float>& texels, Extent extent) {
     const int across = (extent.width + 3) / 4;
-    Errors errors;
+    Bc7Errors errors;
     for (int n = 0; n < static_cast<int>(blocks.size() / 16); ++n) {
         std::uint8_t rgba[16][4];
-        decode_bc7(&blocks[index(16 * n)], rgba);
+        decode_bc7(&blocks[place_of(16 * n)], rgba);
         for (int k = 0; k < 16; ++k) {
             const int i = n % across * 4 + k % 4, j = n / across * 4 + k / 4;
             if (i >= extent.width || j >= extent.height) continue;
-            const float* const texel = &texels[4 * index(j * extent.width + i)];
+            const float* const texel = &texels[4 * place_of(j * extent.width + i)];
             double v[3], along = 0, squared = 0;
             for (int c = 0; c < 3; ++c) {
                 v[c] = 2.0 * rgba[k][c] / 255.0 - 1.0;
@@ -138,7 +138,7 @@ TEST(EncodeBc7, EveryInstructionSetGivesTheSameBytes) {
     const Extent extent{131, 37};
     for (const bool alpha : {false, true}) {
         const std::vector<float> texels = bumps(extent, alpha, 0.4f);
-        for (const Effort effort : kEfforts) {
+        for (const Effort effort : kBc7Efforts) {
             const std::vector<std::byte> expected = encoded(effort, texels, extent);
             on_every_target([&] { EXPECT_EQ(encoded(effort, texels, extent), expected); });
         }
@@ -149,7 +149,7 @@ TEST(EncodeBc7, EveryInstructionSetGivesTheSameBytes) {
 TEST(EncodeBc7, ABlockDependsOnItsTexelsAlone) {
     const Extent extent{72, 24};
     const std::vector<float> texels = bumps(extent, true, 0.4f);
-    for (const Effort effort : kEfforts) {
+    for (const Effort effort : kBc7Efforts) {
         const std::vector<std::byte> all = encoded(effort, texels, extent);
         for (int n = 0; n < extent.width / 4 * (extent.height / 4); ++n) {
             std::vector<float> block;
@@ -168,8 +168,8 @@ TEST(EncodeBc7, MoreEffortComesNearer) {
     const Extent extent{128, 128};
     const std::vector<float> texels = bumps(extent, false, 0.4f);
     double before = 1.35;  // a limit for fast
-    for (const Effort effort : kEfforts) {
-        const Errors errors = errors_of(encoded(effort, texels, extent), texels, extent);
+    for (const Effort effort : kBc7Efforts) {
+        const Bc7Errors errors = errors_of(encoded(effort, texels, extent), texels, extent);
         EXPECT_LT(errors.angle, before);
         EXPECT_EQ(errors.least_alpha, 255) << "nothing is beside the normals";
         before = errors.angle;
@@ -179,8 +179,8 @@ TEST(EncodeBc7, MoreEffortComesNearer) {
 TEST(EncodeBc7, KeepsDataInAlpha) {
     const Extent extent{128, 128};
     const std::vector<float> texels = bumps(extent, true, 0.4f);
-    for (const Effort effort : kEfforts) {
-        const Errors errors = errors_of(encoded(effort, texels, extent), texels, extent);
+    for (const Effort effort : kBc7Efforts) {
+        const Bc7Errors errors = errors_of(encoded(effort, texels, extent), texels, extent);
         EXPECT_LT(errors.angle, 2.2);
         EXPECT_LT(errors.alpha, 4.0);
     }
@@ -190,7 +190,7 @@ TEST(EncodeBc7, KeepsDataInAlpha) {
 TEST(EncodeBc7, TakesAnyDirection) {
     const Extent extent{128, 128};
     const std::vector<float> texels = bumps(extent, false, -1.0f);
-    for (const Effort effort : kEfforts)
+    for (const Effort effort : kBc7Efforts)
         EXPECT_LT(errors_of(encoded(effort, texels, extent), texels, extent).angle, 2.5);
 }
 
@@ -199,7 +199,7 @@ TEST(EncodeBc7, FlatBlocksAndBrokenVectorsAreEncoded) {
     for (const auto& vector : vectors) {
         std::vector<float> texels;
         for (int k = 0; k < 16; ++k) texels.insert(texels.end(), vector, vector + 4);
-        for (const Effort effort : kEfforts) {
+        for (const Effort effort : kBc7Efforts) {
             const std::vector<std::byte> block = encoded(effort, texels, {4, 4});
             if (vector[0] + vector[1] + vector[2] == 0) continue;  // any direction is as good
             EXPECT_LT(errors_of(block, texels, {4, 4}).angle, 0.4);

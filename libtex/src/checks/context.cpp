@@ -153,6 +153,10 @@ Result<void> measure(CheckContext& context) {
     return {};
 }
 
+bool has_free_lengths(const CheckContext& context) {
+    return context.options.any_length || context.texture.format == Format::bc7_unorm;
+}
+
 bool has_more_data(const Stored& stored, const TexelCounts& counts) {
     const auto& planes = stored.image->planes;
     const auto holds_component = [&](std::size_t c) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "checks/context.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -30,9 +31,7 @@ void check_lengths(const CheckContext& context, Findings& findings) {
         (context.background && context.background->texels > 0 ? kNullShareBesideGrey : kNullShare)) {
         add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
-    // Encoders of BC7 that look at directions leave lengths as they come.
-    const bool is_free = context.options.any_length || context.texture.format == Format::bc7_unorm;
-    if (!is_free && counts.share(Property::off_length) > kOffLengthShare) {
+    if (!has_free_lengths(context) && counts.share(Property::off_length) > kOffLengthShare) {
         add_counted(context, findings, "N201", Property::off_length,
                     " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
                         ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// --format bc7: what the commands make of it.
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class Bc7 : public testing::Test {
+protected:
+    Bc7() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        does("bake-normals bricks.png -o b.png --bumpiness 8");
+    }
+    Ran does(const std::string& script) {
+        Ran ran = shell(scratch_, "set -e; " + script);
+        EXPECT_EQ(ran.code, 0) << script << ": " << ran.out << ran.err;
+        return ran;
+    }
+    Scratch scratch_;
+};
+
+// Encoders of BC7 leave the lengths of vectors as they come: that is no finding, in no level.
+TEST_F(Bc7, WhatIsWrittenHasNoFindings) {
+    for (const std::string effort : {"fast", "normal"}) {
+        for (const std::string name : {"a.dds", "a.ktx2"}) {
+            does("bake-normals bricks.png -o " + name + " --format bc7 --bumpiness 8 --effort " + effort +
+                 "; check-normals " + name + " --fail-on warning --require format=bc7; compare-normals b.png " + name +
+                 " --max-mean 0.7");
+        }
+    }
+}
+
+TEST_F(Bc7, KeepsAlphaAndRefusesWhatItCannotHold) {
+    does("bake-normals bricks.png -o a.dds --format bc7 --alpha bricks.png --bumpiness 8; "
+         "unpack-normals a.dds -o n.png --alpha-out h.png; compare-normals b.png n.png --max-mean 1");
+    const auto fails = [&](const std::string& line, const std::string& reason) {
+        const Ran ran = shell(scratch_, line);
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+    };
+    fails("pack-normals b.png -o x.dds --format bc7 --rdo-mean 0.5", "--rdo-mean needs --format");
+    fails("pack-normals b.png -o x.png --format bc7", "bc7 goes into .dds, .ktx2");
+    fails("pack-normals b.png -o x.dds --format bc7 --blue bricks.png", "blue");
+}
+
+}  // namespace tex::cli
