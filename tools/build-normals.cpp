@@ -134,8 +134,8 @@ Result<std::unique_ptr<cli::BuildTree>> BuildNormals::read(cli::Console& console
     farm_.check_fits(path, tree->text, build_, console);
     tree->recipes.reserve(manifest.rules.size());
     for (const cli::RuleSettings& rule : manifest.rules) {
-        tree->recipes.emplace_back(manifest, rule, static_cast<int>(tree->recipes.size()) + 1, build_.root,
-                                   tree->pool, console);
+        tree->recipes.emplace_back(manifest, rule, static_cast<int>(tree->recipes.size()) + 1, build_.root, tree->pool,
+                                   console);
     }
     return tree;
 }

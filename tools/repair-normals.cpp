@@ -181,7 +181,8 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
         if (left.severity != Severity::error) continue;
         job.raise(cli::ExitCode::findings, fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message,
                                                        fault.certainty == RepairClass::likely ? " (likely = true "
-                                                                                                "repairs it)" : ""));
+                                                                                                "repairs it)"
+                                                                                              : ""));
         break;
     }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
@@ -270,7 +271,8 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         if (!with) return with.error();
         const auto bytes = std::make_shared<std::vector<std::byte>>();
         with->write.into = bytes;
-        const auto packed = pack_file(maps.front()->path, maps.front()->name(), job.task.container, *with, {job.threads(), {}});
+        const auto packed =
+            pack_file(maps.front()->path, maps.front()->name(), job.task.container, *with, {job.threads(), {}});
         if (!packed) return packed.error();
         ModelPicture& picture = changes.pictures.emplace_back();
         picture.container = job.task.container;

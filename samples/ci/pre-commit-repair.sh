@@ -14,6 +14,7 @@ if ! xargs -0 git diff --quiet -- <"$list"; then
     exit 1
 fi
 repaired=0
+# shellcheck disable=SC2016  # the inner shell expands it
 xargs -0 -n 1 sh -c 'exec repair-normals --quiet "./$0" -o "./$0"' <"$list" || repaired=1
 if ! xargs -0 git diff --quiet -- <"$list"; then
     xargs -0 git diff --name-only -- <"$list" | sed 's/$/: repaired; look at it, then git add and commit again/' >&2

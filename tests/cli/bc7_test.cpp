@@ -35,8 +35,9 @@ TEST_F(Bc7, WhatIsWrittenHasNoFindings) {
 }
 
 TEST_F(Bc7, KeepsAlphaAndRefusesWhatItCannotHold) {
-    does("bake-normals bricks.png -o a.dds --format bc7 --alpha bricks.png --bumpiness 8; "
-         "unpack-normals a.dds -o n.png --alpha-out h.png; compare-normals b.png n.png --max-mean 1");
+    does(
+        "bake-normals bricks.png -o a.dds --format bc7 --alpha bricks.png --bumpiness 8; "
+        "unpack-normals a.dds -o n.png --alpha-out h.png; compare-normals b.png n.png --max-mean 1");
     const auto fails = [&](const std::string& line, const std::string& reason) {
         const Ran ran = shell(scratch_, line);
         EXPECT_EQ(ran.code, 2) << ran.err;

@@ -101,9 +101,10 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
 TEST_F(CheckNormalsCi, HookRepairsWhatIsStaged) {
     EXPECT_EQ(shell(scratch_, "cp samples/ci/pre-commit-repair.sh .git/hooks/pre-commit").code, 0);
     bake("art/a_n.dds", "up");
-    const std::string make = "pack-normals art/a_n.dds -o art/a_n.png --format rgb8 && cp art/a_n.png right.png && "
-                             "convert right.png -separate -swap 0,2 -combine -strip art/a_n.png && rm art/a_n.dds && "
-                             "git add art";
+    const std::string make =
+        "pack-normals art/a_n.dds -o art/a_n.png --format rgb8 && cp art/a_n.png right.png && "
+        "convert right.png -separate -swap 0,2 -combine -strip art/a_n.png && rm art/a_n.dds && "
+        "git add art";
     EXPECT_EQ(shell(scratch_, make).code, 0);
     const std::string bgr = scratch_.read("art/a_n.png");
     // What is not staged is nobody's to change.

@@ -231,9 +231,10 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     // three.js 0.187 draws the file for bevy as it must (tests/engines).
     EXPECT_EQ(scratch_.read("out/three-packed/rock.ktx2"), scratch_.read("out/bevy/rock.ktx2"));
     // Engines treat floats as other pictures (three.js 0.187 draws an EXR file of vectors flat and black).
-    does("bake-normals rock.png -o vectors.exr; convert out/unity/rock.png -strip codes.png; "
-         "oiiotool codes.png --colorconvert linear linear -d float -o codes.exr 2>/dev/null || "
-         "convert codes.png -set colorspace RGB -define quantum:format=floating-point codes.exr");
+    does(
+        "bake-normals rock.png -o vectors.exr; convert out/unity/rock.png -strip codes.png; "
+        "oiiotool codes.png --colorconvert linear linear -d float -o codes.exr 2>/dev/null || "
+        "convert codes.png -set colorspace RGB -define quantum:format=floating-point codes.exr");
     says("blender", "vectors.exr", "blender decodes 2c - 1, and the file holds x, y and z themselves");
     EXPECT_EQ(shell(scratch_, "check-normals --for blender codes.exr").code, 0);
     fails("bake-normals rock.png -o vectors.exr --for three --format half", "and three decodes 2c - 1");

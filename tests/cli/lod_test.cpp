@@ -192,8 +192,8 @@ TEST_F(Lods, EveryMaterialGetsItsMap) {
     EXPECT_EQ(line["maps"][1]["extent"], JsonValue::parse("[16,16]"));
     EXPECT_FALSE(scratch_.has("out/left.png"));
     // One alone leaves the other as it is.
-    does("transfer-normals low.glb high.glb -o out/one.glb --material B --quiet");
-    EXPECT_EQ(model("out/one.glb").maps[0].scale, 3.0);
+    does("mkdir one; transfer-normals low.glb high.glb -o one/one.glb --material B --quiet");
+    EXPECT_EQ(model("one/one.glb").maps[0].scale, 3.0);
     // Pictures of all.
     does(
         "transfer-normals low.glb high.glb --material all --out-dir maps --name '{stem}_{material}.png' --extent 16 "

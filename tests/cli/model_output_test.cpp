@@ -63,8 +63,7 @@ protected:
         scratch_.write("maps/square.bin", maker.binary);
         std::string primitives;
         for (std::size_t k = 0; k < pictures.size(); ++k) {
-            primitives += std::string(k == 0 ? "" : ",") +
-                          R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2)" +
+            primitives += std::string(k == 0 ? "" : ",") + R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2)" +
                           (w == 0.0f ? "" : R"(,"TANGENT":4)") + R"(},"indices":3,"material":)" + std::to_string(k) +
                           "}";
         }

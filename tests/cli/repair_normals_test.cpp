@@ -160,9 +160,10 @@ TEST_F(RepairNormals, HeightsDecideWhichChannelIsMirrored) {
 
 TEST_F(RepairNormals, IsAStepOfManifests) {
     const auto write = [&](const std::string& options) {
-        scratch_.write("normals.toml", "version = 1\n[[rule]]\nmatch = \"in/*.png\"\nout-dir = \"out\"\n"
-                                       "name = \"{stem}.png\"\nsteps = [ { repair = { " +
-                                           options + " } } ]\n");
+        scratch_.write("normals.toml",
+                       "version = 1\n[[rule]]\nmatch = \"in/*.png\"\nout-dir = \"out\"\n"
+                       "name = \"{stem}.png\"\nsteps = [ { repair = { " +
+                           options + " } } ]\n");
     };
     const auto build = [&] { return run(scratch_, "build-normals", {"--no-sync"}); };
     ASSERT_EQ(shell(scratch_, "mkdir in; cp clean.png bgr.png in").code, 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@
 #include "files/input_file.h"
 #include "formats/bytes.h"
 #include "formats/texture_rows.h"
-#include "unit/file_text.h"
 #include "unit/texel_sums.h"
+#include "unit/textures.h"
 
 namespace tex {
 namespace {
@@ -32,7 +33,7 @@ constexpr std::size_t kSchemeAt = 44, kDescriptorAt = 48, kGlobalAt = 64, kModel
                       kSecondChannel = 47;
 
 Bytes made(const std::string& name) {
-    return bytes_of(content(TEX_SOURCE_DIR "/tests/fuzz/corpus/ktx2/basis-" + name));
+    return bytes_of(std::filesystem::path(TEX_SOURCE_DIR "/tests/fuzz/corpus/ktx2/basis-" + name));
 }
 
 std::byte& described(Bytes& file, std::size_t at) { return file[load_u32(file.data() + kDescriptorAt) + at]; }

@@ -168,7 +168,7 @@ TEST_F(Elevations, OfGdalHaveItsScaleAndOffset) {
 
 // The last blocks reach beyond the picture, and its planes do not. (The sanitizers see where rows are written.)
 TEST(FileValues, StoredValuesOfBlocksStayInThePicture) {
-    for (const Encoding encoding : {Encoding::bc5, Encoding::dxt5nm, Encoding::bc7, Encoding::eac_rg11}) {
+    for (const Encoding encoding : {Encoding::bc5, Encoding::dxt5nm, Encoding::bc7}) {
         for (const int height : {1, 5, 9, 11}) {
             NormalMap map({7, height});
             for (int j = 0; j < height; ++j) {
@@ -192,7 +192,8 @@ TEST(FileValues, StoredValuesOfBlocksStayInThePicture) {
             const auto decoded = decode(*texture, 0);
             ASSERT_EQ(image->extent(), (Extent{7, height}));
             for (int j = 0; j < height; ++j) {
-                for (int i = 0; i < 7; ++i) EXPECT_EQ(image->planes[0].at(i, j), decoded->planes[0].at(i, j));
+                for (int i = 0; i < 7; ++i)
+                    EXPECT_NEAR(image->planes[0].at(i, j), 255.0f * decoded->planes[0].at(i, j), 0.01f);
             }
         }
     }

@@ -37,11 +37,12 @@ struct Eight {
 };
 
 TEST(TexCFailures, OfTexels) {
+    constexpr int32_t kNoFormat = 1000;
     Eight eight, result;
     tex_format_info info = {};
     info.size = sizeof info;
     const tex_texels rg = eight.texels(TEX_FORMAT_RG8_UNORM), bc5 = eight.texels(TEX_FORMAT_BC5_UNORM);
-    const tex_texels nothing = eight.texels(50);
+    const tex_texels nothing = eight.texels(kNoFormat);
     const tex_channels blue = {{nullptr, nullptr, result.floats.data(), nullptr}, 8};
     const tex_channels red = {{result.floats.data(), nullptr, nullptr, nullptr}, 8};
     const tex_channels narrow = {{result.floats.data(), nullptr, nullptr, nullptr}, 7};
@@ -52,7 +53,7 @@ TEST(TexCFailures, OfTexels) {
         return tex_unpack(&rg, &options, 0, 8, &map);
     };
     expect_codes({
-        {"no such format", TEX_BAD_OPTION, tex_get_format(50, &info)},
+        {"no such format", TEX_BAD_OPTION, tex_get_format(kNoFormat, &info)},
         {"no such format", TEX_BAD_OPTION, tex_get_format(-1, &info)},
         {"a channel that the format lacks", TEX_BAD_ARGUMENT, tex_decode(&rg, 0, 8, &blue)},
         {"a stride is too small", TEX_BAD_ARGUMENT, tex_decode(&rg, 0, 8, &narrow)},
@@ -62,7 +63,7 @@ TEST(TexCFailures, OfTexels) {
         {"the swizzle has no x", TEX_BAD_OPTION, unpacked({TEX_Y, TEX_Y, TEX_ZERO, TEX_ONE})},
         {"the swizzle has no y", TEX_BAD_OPTION, unpacked({TEX_X, TEX_ONE, TEX_ZERO, TEX_ONE})},
         {"one that the format lacks", TEX_BAD_OPTION, unpacked({TEX_X, TEX_ZERO, TEX_ZERO, TEX_Y})},
-        {"the bytes of nothing", 0, static_cast<int32_t>(tex_row_bytes(50, 8))},
+        {"the bytes of nothing", 0, static_cast<int32_t>(tex_row_bytes(kNoFormat, 8))},
         {"the bytes of too much", 0, static_cast<int32_t>(tex_row_bytes(TEX_FORMAT_R8_UNORM, 1048577))},
     });
     EXPECT_NE(tex_decode(&nothing, 0, 8, &red), TEX_OK);

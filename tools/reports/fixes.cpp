@@ -270,8 +270,7 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
     const std::string_view id = finding.rule->id;
     const std::string type = type_of_model(report);
     const auto target = target_of(id, report, require);
-    const bool is_written = !type.empty() && target &&
-                            command_of(*finding.rule, report).program == "pack-normals" &&
+    const bool is_written = !type.empty() && target && command_of(*finding.rule, report).program == "pack-normals" &&
                             !is_red_mirrored(id, report) && id != "N108";
     if (!is_written) return {"Correct the image in the program that made it, and put it into the model again."};
     FixCommand command;

@@ -62,7 +62,7 @@ public:
     void remark(std::string sentence, const std::string& file = {}) {
         remarks_.push_back({name_for(file), std::move(sentence)});
     }
-    void say(std::string_view text) { text_ += text; }            // on standard output, unless --json is given
+    void say(std::string_view text) { text_ += text; }  // on standard output, unless --json is given
     // The run exits with this code or a higher one. `why` is for build-normals: a clause without the name of the file.
     void raise(ExitCode code, std::string why = {}) {
         code_ = std::max(code_, code);

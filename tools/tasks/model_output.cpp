@@ -91,8 +91,7 @@ ModelChanges ModelOutput::changes(Container container) const {
 
 namespace {
 
-std::vector<ModelFile> set_output(Task& task, Result<ModelOutput> made, bool may_keep,
-                                  const MeshReadOptions& options) {
+std::vector<ModelFile> set_output(Task& task, Result<ModelOutput> made, bool may_keep, const MeshReadOptions& options) {
     auto output = std::make_shared<ModelOutput>();
     task.model_output = output;
     std::optional<Result<ModelFiles>> files;

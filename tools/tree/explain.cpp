@@ -172,7 +172,8 @@ std::string task_text(const BuildTask& task, const Recipe& recipe, Console& cons
                                   ? recipe.first_task(*last.converter, recipe.path_to(task.input), name)
                                   : last.converter->task_for("between.exr", name, task.input),
                               console};
-        text += settings_text(rule.steps.back(), &rule.outputs[k], recipe.table_of(rule.steps.back().command), &decided);
+        text +=
+            settings_text(rule.steps.back(), &rule.outputs[k], recipe.table_of(rule.steps.back().command), &decided);
         text += "  the same by hand:\n";
         for (const std::string& line : recipe.command_lines(task.input, k)) text += "    " + line + "\n";
     }

@@ -444,8 +444,9 @@ struct ModelFiles {
 //
 // All files are written to the disk first. Then they take their places, one after the other, as write_file() describes,
 // and the model comes last: an interrupted run leaves the old model, and some of the files beside it may be new. Names
-// beside the model come from the model. So links there are replaced and not followed, and a file that exists is replaced
-// only if the old model at `output` names it, or if it has the same bytes; with options.no_clobber, such a file stays.
+// beside the model come from the model. So links there are replaced and not followed, and a file that exists is
+// replaced only if the old model at `output` names it, or if it has the same bytes; with options.no_clobber, such a
+// file stays.
 //
 // Errors: those of model_files() and write_file(); io (a file that would be replaced is not known to belong to the
 // output); bad_data (a buffer with a picture is damaged); unsupported (a GLB

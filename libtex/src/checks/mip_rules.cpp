@@ -152,8 +152,7 @@ Result<void> check_mip_rules(const CheckContext& context, Findings& findings) {
             return done.error();
         if (measure.signal > kLeastSignal) levels.push_back(measure);
     }
-    if (!has_free_lengths(context))
-        check_lengths(levels, context.counts.mean_length, context.stored.has_z(), findings);
+    if (!has_free_lengths(context)) check_lengths(levels, context.counts.mean_length, context.stored.has_z(), findings);
     // Palettes of 5:6:5 bits keep less of fine noise than BC5 and DXT5nm do.
     const bool is_coarse = context.stored.in_blocks && context.stored.has_z();
     check_relations(levels, (is_coarse ? kCoarseRelated : 1.0) * thresholds::kLevelRelated, findings);

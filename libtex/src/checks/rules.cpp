@@ -46,7 +46,8 @@ constexpr Rule kRules[] = {
      "pack-normals FILE --keep-length --y-in WANTED --y WANTED --format SAME -o FIXED", ""},
     {"N113", "unfit-for-engine", file, error, true, "The file is not what the engine reads.",
      "The engine named by --for does not read its file type, does not read normals from its format, gets too few "
-     "levels, or decodes 2c - 1 where floats hold x, y and z themselves. Engines do not build levels for block formats.",
+     "levels, or decodes 2c - 1 where floats hold x, y and z themselves. Engines do not build levels for block "
+     "formats.",
      "Make the file again with bake-normals or pack-normals and the same --for.", "N103"},
     {"N114", "uastc-without-alpha", file, error, true, "The file has no y.",
      "A file of Basis Universal (UASTC, ETC1S) says which channels it has. This one has a single value for each texel, "
