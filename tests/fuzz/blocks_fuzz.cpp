@@ -65,7 +65,7 @@ Block decode_block(tex::Format format, const std::byte* bytes) {
 // Whether there is a decoder beside that of blocks/.
 bool has_kernel(tex::Format format) {
     const tex::Codec& codec = *tex::format_row(format).codec;
-    return codec.has_grid && codec.is_written;
+    return codec.has_grid && codec.is_written && codec.whole == nullptr;
 }
 
 void compare_blocks(const tex::Texture& texture, const tex::Image& image) {
