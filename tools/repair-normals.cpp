@@ -100,6 +100,8 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     command.finds_things();
     files.writes_nothing = [this] { return dry_run_; };
     files.add(command);
+    command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
+        .often(4, "print what would be done, and write nothing");
     command.group("Repairs");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     const auto rules_into = [](std::vector<std::string>& names) {
@@ -132,8 +134,6 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     cli::add_length_in(command, length_in_);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
-    command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
-        .often(4, "print what would be done, and write nothing");
     command.check([this] {
         if (!dry_run_) return;
         for (const std::string& option : command.given_of({"--update", "--depfile"}))
