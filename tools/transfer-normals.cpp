@@ -185,7 +185,7 @@ void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
     if (!takes_all_materials()) return;
     if (const auto given = command.given_of(idle); !given.empty())
         throw cli::UsageError("--material all and " + given.front() + " contradict each other");
-    rules.materials = [this, how](const cli::Input& input) {
+    rules.materials = [how](const cli::Input& input) {
         std::vector<cli::Input> inputs;
         for (auto& material : cli::materials_of_model(input.name, "", how)) {
             inputs.push_back(input);
