@@ -76,13 +76,13 @@ step() {
     fi
 }
 
-# compile_alone COMPILER: each source and each private header by itself. The other builds compile folders as one source,
-# which hides a missing include.
+# compile_alone COMPILER [UNITY_BUILD]: each source and each private header by itself, but for the sources that
+# UNITY_BUILD has compiled so. The other builds compile folders as one source, which hides a missing include.
 compile_alone() {
     local log=$results/alone.configure.log
     cmake --preset dev -B build/alone -DBUILD_TESTING=OFF -DTEX_PYTHON=ON -DTEX_OIIO=ON >"$log" ||
         { cat "$log"; return 1; }
-    if tests/alone.py build/alone "$1"; then count alone 1 0; else count alone 1 1; return 1; fi
+    if tests/alone.py build/alone "$@"; then count alone 1 0; else count alone 1 1; return 1; fi
 }
 
 # preset NAME "TARGET..." CTEST_OPTION...: builds the targets of a preset, or the whole preset, and runs tests.

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compiles every source and every private header alone, without code, and prints what fails.
 
-    tests/alone.py BUILD [COMPILER]
+    tests/alone.py BUILD [COMPILER [UNITY_BUILD]]
 
 BUILD is a folder that CMake has configured without unity builds and with compile_commands.json. Unity builds hide a
 missing include, because another source of the folder has it; so do precompiled headers, which this script leaves out. A
-header whose source includes it first has been compiled alone with it.
+header whose source includes it first has been compiled alone with it. So have the sources that UNITY_BUILD, a folder
+that was built without precompiled headers, does not put together with others: they are left out.
 """
 
 import concurrent.futures
@@ -59,7 +60,12 @@ def main():
         source = pathlib.Path(entry["file"])
         if source.is_relative_to(ROOT) and not source.is_relative_to(build):
             commands.setdefault(source.relative_to(ROOT), flags_of(entry["command"]))
-    jobs = [(path, flags, None) for path, flags in commands.items() if path.parts[0] in ("libtex", "tools")]
+    compiled = set()
+    if len(sys.argv) > 3:
+        unity = json.loads((pathlib.Path(sys.argv[3]) / "compile_commands.json").read_text())
+        compiled = {pathlib.Path(entry["file"]) for entry in unity}
+    jobs = [(path, flags, None) for path, flags in commands.items()
+            if path.parts[0] in ("libtex", "tools") and ROOT / path not in compiled]
 
     for header in sorted([*ROOT.glob("libtex/src/**/*.h"), *ROOT.glob("tools/**/*.h")]):
         path = header.relative_to(ROOT)

@@ -108,6 +108,7 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
 
 TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     scratch_.write("art/broken_n.png", "no picture");
+    scratch_.add_sample("report.png", "art/colour.png");
     scratch_.add_sample("waves.png", "art/bad\xff_h.png");  // a name that no TOML may hold
     const Ran ran = shell(scratch_, "build-normals --init");
     ASSERT_EQ(ran.code, 0) << ran.err;
@@ -123,6 +124,13 @@ TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     for (const char* name : {"art/wall_n", "art/deep/floor_n", "bought/brick_nrm", "art/pbr/wall_l", "art/dune_h"})
         EXPECT_TRUE(scratch_.has(std::string("build/textures/") + name + ".dds")) << name;
     EXPECT_EQ(shell(scratch_, "check-normals --baseline normals-baseline.json bought/*.tga art/wall_n.png").code, 0);
+    // The commands that it prints: the whole tree passes, with its colours and heights and with what was built.
+    EXPECT_NE(ran.out.find("next: build-normals --dry-run shows"), std::string::npos) << ran.out;
+    EXPECT_EQ(shell(scratch_, "build-normals --dry-run").code, 0);
+    EXPECT_NE(ran.out.find("check-normals . --baseline normals-baseline.json"), std::string::npos) << ran.out;
+    std::filesystem::remove(scratch_.path("art/broken_n.png"));
+    const Ran whole = shell(scratch_, "check-normals . --baseline normals-baseline.json");
+    EXPECT_EQ(whole.code, 0) << whole.out << whole.err;
     // Neither file is replaced.
     const Ran again = shell(scratch_, "build-normals --init");
     EXPECT_EQ(again.code, 3);

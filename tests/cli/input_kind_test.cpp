@@ -50,6 +50,28 @@ TEST_F(InputKind, PicturesThatAreNoNormalMapAreNamedAsCheckNormalsNamesThem) {
     }
 }
 
+// Unity's detail maps (HDRP) have albedo in R, y in G, smoothness in B and x in A; a mask in R and nothing in B are
+// common in games of the time of DXT5; X-Ray has x, y and z in A, B and G. What the advice says is then right.
+TEST_F(InputKind, NormalsInOtherChannelsAreFound) {
+    go("convert '(' -size 512x512 plasma:tan-black -colorspace gray ')' n.png "
+       "'(' -size 512x512 gradient:gray20-gray80 ')' "
+       "'(' -clone 0 ')' '(' -clone 1 -channel G -separate ')' '(' -clone 2 ')' '(' -clone 1 -channel R -separate ')' "
+       "-delete 0-2 -channel RGBA -combine -depth 8 PNG32:detail.png;"
+       "convert n.png '(' -clone 0 -channel B -separate ')' '(' -clone 0 -channel G -separate ')' "
+       "'(' -clone 0 -channel R -separate ')' -delete 0 '(' -size 512x512 gradient:gray20-gray80 ')' "
+       "+insert -channel RGBA -combine -depth 8 PNG32:xray.png; convert n.png -depth 8 n8.png");
+    const std::string detail = said("pack-normals", "detail.png");
+    EXPECT_TRUE(has(detail, "(--swizzle ag)")) << detail;
+    const std::string xray = said("pack-normals", "xray.png");
+    EXPECT_TRUE(has(xray, "--swizzle abg")) << xray;
+    EXPECT_TRUE(has(run(scratch_, "check-normals", {"detail.png"}).out, "(--swizzle ag)"));
+    EXPECT_TRUE(has(run(scratch_, "check-normals", {"xray.png"}).out, "--swizzle abg"));
+    for (const char* line : {"detail.png --swizzle ag", "xray.png --swizzle abg"}) {
+        go("pack-normals " + std::string(line) + " -o again.png --drop --no-sync");
+        go("compare-normals n8.png again.png --max 1.5");
+    }
+}
+
 TEST_F(InputKind, OneJudgeForBackgroundsAndInvertedPictures) {
     const std::string round = said("pack-normals", "round.png");
     EXPECT_TRUE(has(round, "--fill-background")) << round;

@@ -21,7 +21,8 @@ constexpr Judgement kJudgements[] = {
     {"N210", &JudgedPicture::is_no_map},       {"N216", &JudgedPicture::is_no_map},
     {"N222", &JudgedPicture::is_no_map},       {"N220", &JudgedPicture::is_inverted},
     {"N213", &JudgedPicture::is_object_space}, {"N214", &JudgedPicture::is_no_map},
-    {"N215", &JudgedPicture::has_background},
+    {"N223", &JudgedPicture::is_x_ray},        {"N215", &JudgedPicture::has_background},
+    {"N219", &JudgedPicture::is_other_blue},
 };
 
 }  // namespace
@@ -45,6 +46,8 @@ std::optional<JudgedPicture> judge_picture(const std::string& path, const ReadOp
 }
 
 std::string no_map_text(const JudgedPicture& judged) { return "this is no normal map: " + judged.words; }
+
+bool names_layout(const JudgedPicture& judged) { return judged.words.find("--swizzle") != std::string::npos; }
 
 std::string no_heights_text(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);

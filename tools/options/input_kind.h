@@ -16,6 +16,8 @@ struct JudgedPicture {
     bool is_no_map = false;        // colours, data, heights, or a map that lost x
     bool is_object_space = false;  // vectors of all directions
     bool is_inverted = false;      // blue, or the whole picture
+    bool is_x_ray = false;         // x, y and z in A, B and G
+    bool is_other_blue = false;    // x and y beside other data
     bool has_background = false;   // normals around which a colour that is none is not filled
     bool is_vectors = false;       // unit vectors are stored in three channels: it is a normal map by intention
 };
@@ -26,6 +28,9 @@ struct JudgedPicture {
 
 // "this is no normal map: R, G and B are equal ..."
 [[nodiscard]] std::string no_map_text(const JudgedPicture& judged);
+
+// Whether the words name another layout in which the picture would be a normal map.
+[[nodiscard]] bool names_layout(const JudgedPicture& judged);
 
 // Added where a manifest makes nothing of such an input.
 inline constexpr const char* kTakeAny = "; check = { inputs = false } in the rule makes it all the same";

@@ -281,6 +281,11 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
             "its vectors point into the surface: blue, or the whole picture, was inverted; invert it back in an image "
             "editor, or, if it was blue alone, let --swizzle rg make z from x and y",
             path);
+    } else if (judged.is_x_ray) {
+        job.warn("x, y and z are in A, B and G, as in the X-Ray engine, but R, G and B are read; --swizzle abg is right",
+                 path);
+    } else if (judged.is_other_blue && names_layout(judged)) {
+        job.warn("these are hardly normals: " + judged.words, path);
     } else if (doubts_z && !has_background) {
         job.warn(
             "blue is not the z of its red and green: it seems to hold other data, such as occlusion or heights; "

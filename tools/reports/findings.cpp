@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -43,7 +44,12 @@ std::string statement_of(const Finding& finding) {
 
 std::string findings_text(const CheckReport& report, const Requirements& require) {
     std::string text, told;  // the command that was printed before
-    for (const Finding& finding : report.findings) {
+    std::vector<const Finding*> by_weight;
+    for (const Finding& finding : report.findings) by_weight.push_back(&finding);
+    std::stable_sort(by_weight.begin(), by_weight.end(),
+                     [](const Finding* a, const Finding* b) { return a->severity > b->severity; });
+    for (const Finding* const each : by_weight) {
+        const Finding& finding = *each;
         const Rule& rule = *finding.rule;
         std::string statement = statement_of(finding);
         statement.pop_back();
@@ -79,10 +85,10 @@ std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
-        "{}: {} seam edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees: {} (a map of "
+        "{}: seams: {}: {} edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees (a map of "
         "this detail that was baked for its mesh and decoder has a mean under {:.1f})\n",
-        printable(title_of(report)), seams.edges, seams.mean, seams.p99, seams.worst,
-        seams.mean < seams.usual ? "as usual" : "more than usual", seams.usual);
+        printable(title_of(report)), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.p99,
+        seams.worst, seams.usual);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {

@@ -140,10 +140,11 @@ public:
         return all;
     }
 
+    // Of all pictures: whoever checks a whole folder checks its colours and heights, too.
     [[nodiscard]] Baseline baseline(const std::string& path) const {
         Baseline baseline(path);
         for (std::size_t k = 0; k < files_.size(); ++k) {
-            if (holds_normals(k)) baseline.add(reports_[k], content_of(path_of(k)));
+            if (!reports_[k].error) baseline.add(reports_[k], content_of(path_of(k)));
         }
         return baseline;
     }
@@ -151,7 +152,7 @@ public:
     [[nodiscard]] int count_findings() const {
         int count = 0;
         for (std::size_t k = 0; k < files_.size(); ++k)
-            count += holds_normals(k) ? static_cast<int>(reports_[k].findings.size()) : 0;
+            count += reports_[k].error ? 0 : static_cast<int>(reports_[k].findings.size());
         return count;
     }
 
@@ -305,6 +306,12 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
         fmt::format("{}\n{}: {} rule{} for {} of them; {}: {} finding{} accepted\n", tree.totals().text(),
                     printable(manifest), rules.size(), rules.size() == 1 ? "" : "s", files, printable(baseline),
                     tree.count_findings(), tree.count_findings() == 1 ? "" : "s");
+    const std::string at = (manifest == "normals.toml" ? "" : " " + shell_word(manifest)) +
+                           (root.empty() ? "" : " --root " + shell_word(root));
+    text += fmt::format(
+        "next: build-normals{} --dry-run shows what it makes, and build-normals{} makes it\n"
+        "      check-normals {} --baseline {} fails for new findings alone\n",
+        at, at, shell_word(root.empty() ? "." : root), shell_word(baseline));
     return console.print(text);
 }
 

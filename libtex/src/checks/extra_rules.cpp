@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "checks/curl.h"
+#include "checks/layout_fit.h"
 #include "rows/z_evidence.h"
 
 namespace tex::inline v1 {
@@ -82,8 +84,10 @@ void add_other_data(const CheckContext& context, Findings& findings) {
     Finding& finding = findings.add(
         "N219", "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
                     " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
-    if (context.base.planes.size() > kAlpha && counts.high[kAlpha] > counts.low[kAlpha])
-        findings.soften(finding, Severity::note);
+    if (context.base.planes.size() <= kAlpha || counts.high[kAlpha] <= counts.low[kAlpha]) return;
+    findings.soften(finding, Severity::note);
+    if (std::abs(context.curl.correlation) < kLeastCorrelation)  // x and y themselves may be elsewhere
+        finding.message += fitting_layout_text(context.stored);
 }
 
 // Whether blue follows x and y, as z does.

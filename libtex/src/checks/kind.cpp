@@ -299,11 +299,14 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
         return has_grey && !is_surface ? Kind::no_map : Kind::normals;
     }
     if (m.grey > thresholds::kGreyTexels) return Kind::no_map;
-    if (are_vectors(m) || are_damaged_vectors(m)) return Kind::normals;
     const KindMeasure::Vectors& other = m.as(Reading::y_z_x);
-    if (other.unit > thresholds::kUnitShare && other.off_centre() < thresholds::kCentred &&
-        other.z > thresholds::kUprightMedian)
-        return Kind::x_ray;
+    const bool is_x_ray = other.unit > thresholds::kUnitShare && other.off_centre() < thresholds::kCentred &&
+                          other.z > thresholds::kUprightMedian;
+    // A middle grey in R makes nearly unit vectors of z and y, too.
+    constexpr double kClearlyMore = 0.1;
+    if (is_x_ray && other.unit > m.as(Reading::as_stored).unit + kClearlyMore) return Kind::x_ray;
+    if (are_vectors(m) || are_damaged_vectors(m)) return Kind::normals;
+    if (is_x_ray) return Kind::x_ray;
     const bool has_alpha = planes.size() > 3 && !is_one(planes[3], 1.0f);
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
         std::abs(m.as(Reading::as_stored).y) < thresholds::kCentred)

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <utility>
 
+#include "checks/layout_fit.h"
+
 namespace tex::inline v1 {
 namespace {
 
@@ -59,7 +61,7 @@ bool check_surface_data(const CheckContext& context, Findings& findings) {
     if (share < kExtremeShare) return false;
     add_share(findings, "N216",
               "blue is nearly 0 or 1 in " + percent(share) + " of the texels, red is " + decimal(0.5 + 0.5 * mean, 2) +
-                  " in the mean, and " + percent(off) + " are off unit length",
+                  " in the mean, and " + percent(off) + " are off unit length" + fitting_layout_text(stored),
               share);
     return true;
 }
@@ -82,7 +84,8 @@ PictureKind check_no_map(const CheckContext& context, Findings& findings) {
     }
     if (check_surface_data(context, findings)) return PictureKind::data;
     const double unit = measure.as(Reading::as_stored).unit;
-    add_share(findings, "N214", evidence_text(measure, context.stored.has_z()), unit);
+    add_share(findings, "N214",
+              evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored), unit);
     return PictureKind::colors;
 }
 

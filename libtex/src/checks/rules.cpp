@@ -176,7 +176,7 @@ constexpr Rule kRules[] = {
     {"N223", "x-ray-layout", values, note, true, "The channels are those of the X-Ray engine.",
      "x, y and z are in A, B and G, and R holds gloss. Other engines need another layout. The other rules judge the "
      "map in this one.",
-     "For other engines, copy A to R, B to G and G to B in an image editor.", ""},
+     "For other engines, let pack-normals read it with --swizzle abg; R, the gloss, is left out then.", ""},
 
     // -- damage -----------------------------------------------------------------------------------------------
     {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
