@@ -33,6 +33,7 @@ private:
     void note_strength(cli::Job& job, const Report& done) const;
     template <class Report>
     void warn_of_flat(cli::Job& job, const Report& done) const;
+    void warn_of_border(cli::Job& job, double ratio) const;
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -44,6 +45,7 @@ private:
         note_strength(job, done);
         warn_of_steep(job, done.steep_texels, done.extent, done.pack.encoding);
         warn_of_flat(job, done);
+        warn_of_border(job, done.border_ratio);
     }
     [[nodiscard]] Result<void> accept(const cli::Job& job) const override { return reader_.accept(job); }
     void add_accept(Step& step, const cli::Job& job) const override {
@@ -145,6 +147,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
             fmt::format("{}: --bumpiness {}, as the file states\n", cli::printable(job.task.input), baked->strength.x));
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
     warn_of_flat(job, *baked);
+    warn_of_border(job, baked->border_ratio);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
     return {};
@@ -183,6 +186,16 @@ void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
                                    : fmt::format("--bumpiness auto would be --bumpiness {}", done.auto_strength);
     job.warn(fmt::format("nearly flat: 99 % of the slopes are below {:.2g} degrees, which shows little; {}",
                          std::max(0.01, degrees), remedy));
+}
+
+// A wall along the border, which nobody has asked for.
+void BakeNormals::warn_of_border(cli::Job& job, double ratio) const {
+    constexpr double kWall = 2.0;
+    if (ratio <= kWall || command.given("--wrap") || files.tiles) return;
+    job.warn(
+        fmt::format("a wall along the border, {:.2g} times as steep as anything inside: these heights do not "
+                    "repeat, but are baked as if they did; --wrap clamp (--wrap repeat: without this warning)",
+                    ratio));
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {

@@ -128,6 +128,9 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     options.blend.wrap_y = wrap_.y;
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     extras.apply(options.source.unpack);
+    for (LayerFile& layer : options.layers) {
+        if (layer.mask) extras.apply(layer.source.unpack);
+    }
     extras.apply(options.mip);
     options.others = extras.inputs(job);
     const cli::OutputOptions own = output.of(job.task.engine);
@@ -139,7 +142,7 @@ BlendFileOptions BlendNormals::options(cli::Job& job) const {
     return options;
 }
 
-// What a detail has beside its normals has no place in the blend.
+// What a detail without a mask has beside its normals has no place in the blend.
 void note_extras(cli::Job& job, const std::string& detail, const std::vector<ExtraChannel>& others) {
     std::vector<std::string> names;
     for (const ExtraChannel& other : others)

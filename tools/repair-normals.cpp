@@ -185,6 +185,13 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
                                                                                               : ""));
         break;
     }
+    for (const RepairStep& step : repaired.steps) {
+        if (step.rule->id != "N220") continue;
+        job.warn(
+            "blue alone is inverted; if bumps are dents now, the whole picture was inverted: invert all of it in "
+            "an image editor instead",
+            name);
+    }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
     const std::lock_guard lock(mutex_);
     totals_.add(repaired);

@@ -41,7 +41,7 @@ Result<NormalMap> blend_layers(MipChain& base, std::vector<Layer>& layers, const
         for (int j = begin; j < end; ++j) {
             rows.make(j, {result.x.row(j), result.y.row(j), result.z.row(j)});
             for (const Extra extra : kExtras) {
-                if (beside[extra]) rows.make_extra(extra, result[extra].row(j));
+                if (beside[extra]) rows.make_extra(extra, nullptr, result[extra].row(j));
             }
         }
     });

@@ -28,6 +28,7 @@ struct LastStep {
         report.strength = done->strength;
         report.on_ground = done->on_ground;
         report.usual_slope = done->usual_slope;
+        report.border_ratio = done->border_ratio;
         report.auto_strength = done->auto_strength;
         report.steep_texels = done->steep_texels;
         return take(*done);

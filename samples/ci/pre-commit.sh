@@ -10,7 +10,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/staged"
 git diff --cached --name-only -z --diff-filter=ACMR -- '*_n.dds' '*_n.ktx2' '*_n.png' '*_n.exr' '*_n.tga' '*_n.tif' \
-    >"$work/list"
+    '*_n.tiff' '*_n.jpg' '*_n.jpeg' '*_n.webp' '*_n.bmp' >"$work/list"
 [ -s "$work/list" ] || exit 0
 git checkout-index -z --stdin --prefix="$work/staged/" <"$work/list"
 # Both stand beside the maps there as in the repository, so that their patterns and names fit.

@@ -265,4 +265,65 @@ TEST_F(Advice, TheBaselineLeavesUnreadableFilesAndShowsWhatItWaives) {
 }
 
 }  // namespace
+// Heights of a terrain, baked as if they repeated, have a wall along their border.
+TEST_F(Advice, HeightsThatDoNotRepeatGetAWall) {
+    scratch_.add_sample("dunes.png", "dunes.png");
+    scratch_.add_sample("waves.png", "waves.png");
+    const Ran wall = shell(scratch_, "bake-normals dunes.png -o d.png --bumpiness 30 --no-sync");
+    EXPECT_EQ(wall.code, 0);
+    EXPECT_NE(wall.err.find("dunes.png: a wall along the border"), std::string::npos) << wall.err;
+    for (const char* quiet : {"bake-normals dunes.png -o d.png --bumpiness 30 --wrap clamp --no-sync",
+                              "bake-normals dunes.png -o d.png --bumpiness 30 --wrap repeat --no-sync",
+                              "bake-normals waves.png -o w.png --bumpiness 30 --no-sync",
+                              "bake-normals bricks.png -o b.png --bumpiness 30 --no-sync"}) {
+        const Ran ran = shell(scratch_, quiet);
+        EXPECT_EQ(ran.err, "") << quiet;
+    }
+}
+
+TEST_F(Advice, AStatementThatTheTexelsContradictIsDoubted) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
+    ASSERT_EQ(says("bake-normals bricks.png -o up.png --bumpiness 3"), "");
+    const std::string wrong = says("pack-normals up.png -o down.png --y-in down --y up");
+    EXPECT_NE(wrong.find("up.png: green is stated to point down, but the texels show the other"), std::string::npos);
+    EXPECT_EQ(says("pack-normals up.png -o down.png --y-in up --y down"), "");
+    EXPECT_EQ(says("pack-normals up.png -o down.png --y-in measured --y down"), "");
+}
+
+TEST_F(Advice, RoughnessWithoutTheMaterialsOwnIsAMirror) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
+    ASSERT_EQ(says("bake-normals bricks.png -o n.png --bumpiness 3"), "");
+    const std::string one = says("mip-normals n.png -o x.png --mips none --roughness-out r.png");
+    EXPECT_NE(one.find("r.png: without --roughness-in, the material's own roughness is 0, a mirror; the only level"),
+              std::string::npos)
+        << one;
+    const std::string kept = says("mip-normals n.png -o x.png --mips none --roughness-out r.png --roughness-in 0.5");
+    EXPECT_NE(kept.find("one level loses no variance"), std::string::npos) << kept;
+    EXPECT_EQ(says("mip-normals n.png -o x.dds --roughness-out r.dds --roughness-in 0.5"), "");
+}
+
+TEST_F(Advice, AnInvertedPictureIsNotMendedInSilence) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line); };
+    ASSERT_EQ(says("bake-normals bricks.png -o n.png --bumpiness 3 --no-sync; convert n.png -negate x.png").err, "");
+    EXPECT_NE(says("check-normals x.png").out.find("advice: That inverts blue alone. If bumps are dents then"),
+              std::string::npos);
+    EXPECT_NE(says("repair-normals x.png --likely -o y.png --no-sync").err.find("if bumps are dents now"),
+              std::string::npos);
+}
+
+TEST_F(Advice, JpegThatNobodyChoseIsNamed) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
+    ASSERT_EQ(says("bake-normals bricks.png -o a_n.jpg --bumpiness 3"), "");
+    EXPECT_NE(says("pack-normals a_n.jpg --out-dir o --y-in up --y down").find("JPEG is lossy"), std::string::npos);
+    EXPECT_EQ(says("pack-normals a_n.jpg --out-dir o --y-in up --y down --container jpeg"), "");
+    EXPECT_EQ(says("pack-normals a_n.jpg -o b_n.jpg --y-in up --y down"), "");
+}
+
+TEST_F(Advice, HeightsInAlphaOfANormalMapAreNamed) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
+    ASSERT_EQ(says("bake-normals bricks.png -o n.png --bumpiness 3 --format rgba8 --alpha height"), "");
+    EXPECT_NE(says("bake-normals n.png -o x.png").find("--channel a takes its alpha as heights"), std::string::npos);
+    EXPECT_EQ(says("bake-normals n.png -o x.png --channel a --bumpiness 3"), "");
+}
+
 }  // namespace tex::cli

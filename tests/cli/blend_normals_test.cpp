@@ -112,6 +112,36 @@ TEST_F(BlendNormals, WhatADetailHasBesideItsNormalsIsMissedAloud) {
     does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr"});
 }
 
+// Where a mask shows the detail, alpha is that of the detail, too: the judge is ImageMagick's own mixture.
+TEST_F(BlendNormals, DataBesideTheNormalsFollowTheMask) {
+    const Ran ready =
+        shell(scratch_,
+              "set -e; for k in base detail; do mip-normals $k.exr -o $k.png --mips none; done\n"
+              "size=$(identify -format '%wx%h!' base.png)\n"
+              "convert waves.png -resize \"$size\" -depth 8 a.png; convert a.png -negate -level 20%,90% b.png\n"
+              "convert bricks.png -resize \"$size\" -depth 8 m.png\n"
+              "pack-normals base.png -o ba.png --format rgba8 --alpha a.png\n"
+              "pack-normals detail.png -o da.png --format rgba8 --alpha b.png\n"
+              "convert a.png b.png m.png -compose over -composite wanted.png\n");
+    ASSERT_EQ(ready.code, 0) << ready.err;
+    const auto differs_by = [&](const std::string& options) {
+        does("blend-normals", {"ba.png", "da.png", "-o", "x.png", "--mask", "m.png", "--format", "rgba8", options});
+        const Ran ran = shell(scratch_,
+                              "convert x.png -alpha extract x_a.png; "
+                              "compare -metric PAE x_a.png wanted.png null: 2>&1 | sed 's/.*(//; s/).*//'");
+        return std::stod(ran.out) * 255.0;
+    };
+    EXPECT_LT(differs_by("--quiet"), 1.5) << "nothing was said, and alpha is mixed";
+    const Ran plain = go("blend-normals", {"ba.png", "da.png", "-o", "x.png", "--format", "rgba8"});
+    EXPECT_NE(plain.err.find("data beside the normals, in A, are not blended"), std::string::npos) << plain.err;
+    const Ran given = go("blend-normals", {"ba.png", "da.png", "-o", "x.png", "--mask", "m.png", "--alpha", "a.png"});
+    EXPECT_NE(given.err.find("in A, are not blended"), std::string::npos) << given.err;
+    // A detail that repeats is sampled as its normals are, and one without alpha leaves that of the base.
+    does("blend-normals", {"ba.png", "da.png", "-o", "y.png", "--mask", "m.png", "--tiling", "2", "--format", "rgba8"});
+    does("blend-normals", {"ba.png", "detail.png", "-o", "z.png", "--mask", "m.png", "--format", "rgba8"});
+    EXPECT_EQ(shell(scratch_, "convert z.png -alpha extract z_a.png; compare -metric AE z_a.png a.png null:").err, "0");
+}
+
 // A detail is read and filtered once. One as large as the base, whose rows could be read in step, is no exception.
 TEST_F(BlendNormals, ManyBasesShareWhatIsReadOfTheirDetails) {
     const Ran ready =

@@ -78,6 +78,10 @@ Result<void> PackCommand::process(Job& job) {
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
     note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding});
     report(job, *packed);
+    // Nobody chose the file type: it is that of the input.
+    if (job.task.container == Container::jpeg &&
+        command.given_of({"--output", "--name", "--container", "--quality"}).empty())
+        repeated_.add(job, job.task.input, "JPEG is lossy, so that normals change; --container png keeps every code");
     return {};
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <tex/check.h>
+#include <tex/format.h>
 
 namespace tex::cli {
 namespace {
@@ -33,6 +34,7 @@ std::optional<JudgedPicture> judge_picture(const std::string& path, const ReadOp
     if (!report || report->error) return std::nullopt;
     JudgedPicture judged;
     judged.is_vectors = report->swizzle[2] == Component::z;
+    judged.has_alpha = report->more_data && format_info(report->format).channels == 4;
     for (const Finding& finding : report->findings) judged.is_vectors &= finding.rule->id != "N206";
     for (const Judgement& judgement : kJudgements) {
         for (const Finding& finding : report->findings) {
@@ -52,6 +54,7 @@ bool names_layout(const JudgedPicture& judged) { return judged.words.find("--swi
 std::string no_heights_text(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);
     if (!judged || !judged->is_vectors || judged->is_no_map) return {};
+    if (judged->has_alpha) return "this is a normal map; --channel a takes its alpha as heights";
     return "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "
            "mip-normals make textures";
 }

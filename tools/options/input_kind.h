@@ -19,6 +19,7 @@ struct JudgedPicture {
     bool is_x_ray = false;         // x, y and z in A, B and G
     bool is_other_blue = false;    // x and y beside other data
     bool has_background = false;   // normals around which a colour that is none is not filled
+    bool has_alpha = false;        // data beside the normals, in alpha
     bool is_vectors = false;       // unit vectors are stored in three channels: it is a normal map by intention
 };
 

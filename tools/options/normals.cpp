@@ -223,7 +223,12 @@ void NormalsReader::note(Job& job, const std::string& path, const SourceInfo& in
             "first, --bc5-order yx reads y first",
             path);
     }
-    if (info.y_doubtful) {
+    if (info.y_doubtful && info.y_known) {
+        job.warn(fmt::format("green is stated to point {}, but the texels show the other direction; say measured, and "
+                             "they decide",
+                             name_of(kYAxisNames, info.y_axis)),
+                 path);
+    } else if (info.y_doubtful) {
         job.warn(fmt::format("green is taken to point {}, but the texels show the other direction; {} sets it",
                              name_of(kYAxisNames, info.y_axis),
                              path == job.task.map_path() ? "--y-in" : "--y-in, or --detail-y-in for a detail,"),
@@ -282,8 +287,9 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
             "editor, or, if it was blue alone, let --swizzle rg make z from x and y",
             path);
     } else if (judged.is_x_ray) {
-        job.warn("x, y and z are in A, B and G, as in the X-Ray engine, but R, G and B are read; --swizzle abg is right",
-                 path);
+        job.warn(
+            "x, y and z are in A, B and G, as in the X-Ray engine, but R, G and B are read; --swizzle abg is right",
+            path);
     } else if (judged.is_other_blue && names_layout(judged)) {
         job.warn("these are hardly normals: " + judged.words, path);
     } else if (doubts_z && !has_background) {

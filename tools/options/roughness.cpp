@@ -293,6 +293,14 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     wrote_levels(job, path, packed.levels);
     const std::vector<std::string> written(job.outputs().begin() + static_cast<std::ptrdiff_t>(normals.size()),
                                            job.outputs().end());
+    const bool is_known = value_ || !input_.file.empty() || !into_.file.empty();
+    if (!is_known) {
+        job.warn(fmt::format("without --roughness-in, the material's own roughness is 0, a mirror; {} has nothing else",
+                             packed.levels == 1 ? "the only level" : "the base level"),
+                 path);
+    } else if (packed.levels == 1) {
+        job.warn("one level loses no variance, so its roughness is the material's own, unchanged", path);
+    }
     Json map;
     if (has_level(path))
         map["output"] = written;

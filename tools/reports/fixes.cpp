@@ -298,6 +298,9 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
 namespace {
 
 constexpr std::string_view kRepair = "repair-normals FILE";
+constexpr const char* kInvertedAdvice =
+    "That inverts blue alone. If bumps are dents then, the whole picture was inverted: invert all of it in an image "
+    "editor instead";
 
 // The command for what repair-normals undoes and no other command does; empty for other findings. It keeps the format
 // and the data beside the normals.
@@ -327,7 +330,7 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
     if (std::string command = repair_command(finding, report, require); !command.empty())
-        return {std::move(command), true};
+        return {std::move(command), true, id == "N220" ? kInvertedAdvice : ""};
     if (finding.rule->fix.starts_with(kRepair)) return {"Export the map again from its source."};
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
@@ -358,8 +361,9 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     }
     std::string fix = command.program + " FILE";
     for (const std::string& option : command.options) fix += " " + option;
-    // Only 8 bits have neither NaN nor values that a file may state to be no data.
-    if (id == "N210" && format_info(report.format).bits > 8) fix += " --fill-invalid";
+    // 8 bits and PNG have neither NaN nor values that a file may state to be no data.
+    if (id == "N210" && format_info(report.format).bits > 8 && container_of(report.file) != Container::png)
+        fix += " --fill-invalid";
     fix += " --format SAME -o FIXED";
     return {filled_in(std::move(fix), *target, report, require), true, mirror_advice(id, *target, report, require)};
 }

@@ -118,7 +118,8 @@ struct BlendOptions {
 // more but too few, the last one is used. Sampled vectors are normalised, then scaled, rotated and blended.
 //
 // The result has the data beside the normals of the base (NormalMap::blue, alpha, length), sampled as its normals are;
-// levels that are made hold the means.
+// levels that are made hold the means. Where a layer has a mask and its detail the same channel, the channel goes from
+// that of the base to that of the detail as the mask says, times the strength: out = base + w (detail - base).
 //
 // The result is one level. Build its mip levels from it; do not blend level by level.
 //

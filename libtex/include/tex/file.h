@@ -271,7 +271,7 @@ struct SourceOptions {
     std::optional<Swizzle> bc5_swizzle;  // of BC5 files, instead of their own; unpack.swizzle takes precedence
     bool r_or_a = false;           // y is in G, and x in A if guess_swizzle() finds it there, else in R; unpack.swizzle
                                    // takes precedence
-    bool doubt_y = false;          // if neither the file nor the caller states y, measure it: SourceInfo::y_doubtful
+    bool doubt_y = false;          // if the file does not state y, measure it: SourceInfo::y_doubtful
     bool inspect = false;          // look for signs that the texels hold something else: object_space, background,
                                    // others
     bool drop_others = false;      // channels that hold no part of the normals are not carried along: see SourceInfo
@@ -307,7 +307,7 @@ struct SourceInfo {
     YAxis y_axis = YAxis::up;  // with which it was read: the direction of y in the file
     bool order_assumed = false;   // neither the file nor its texels say whether x or y is first: it was taken to be x
     bool y_known = false;         // y_axis comes from the file, the caller or the texels; otherwise it is assumed
-    bool y_doubtful = false;      // it is assumed, and the texels clearly show the other direction
+    bool y_doubtful = false;      // it is assumed, or the caller states it, and the texels clearly show the other one
     bool object_space = false;    // more than 5 % of the texels that were inspected point away from the surface
     bool z01 = false;             // z was read as ValueRange::z01, which the texels show
     bool z_doubtful = false;      // z is stored, but does not follow x and y: other data may be in its place

@@ -134,6 +134,9 @@ struct BakeFileReport {
     // What BakeFileOptions::auto_strength would find, or has found; on the ground, the vertical_scale that would do the
     // same; 0: all is flat.
     float auto_strength = 0.0f;
+    // How many times as steep the outermost columns or rows are as any inside; 0: less than 6 degrees. Above 2, the
+    // heights do not repeat, and were baked with Wrap::repeat as if they did.
+    double border_ratio = 0.0;
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
@@ -349,6 +352,7 @@ struct StepsReport {
     bool on_ground = false;
     float usual_slope = 0.0f;  // this and the next two as in BakeFileReport, if the only step bakes
     float auto_strength = 0.0f;
+    double border_ratio = 0.0;      // as there
     std::int64_t steep_texels = 0;  // maps of floats hold all slopes
     std::vector<MapRead> maps;
 };

@@ -52,6 +52,10 @@ public:
         scale_row(map_.chain == nullptr ? between_rows(out) : between_texels(out), 1.0f, ScaleMode::slope, width_, out);
     }
 
+    // Whether there are texels of an extra channel.
+    [[nodiscard]] bool has(Extra extra) const {
+        return map_.chain != nullptr && !map_.chain->levels.front()[extra].empty();
+    }
     // Samples an extra channel at the row that was made last.
     void extra(Extra extra, float* out) {
         const float* const made = samples(
@@ -106,7 +110,7 @@ class BlendRows::LayerRows {
 public:
     LayerRows(const PlacedLayer& placed, const BlendOptions& options, Extent result)
         : layer_(placed.layer), rotation_(rotation_of(layer_.rotation)), options_(options), width_(result.width),
-          detail_(placed.detail, result), rows_({result.width, 4}) {
+          detail_(placed.detail, result), rows_({result.width, 5}) {
         const Plane<float>& mask = layer_.mask;
         if (!mask.empty()) mask_.emplace(mask.extent(), result, stretch(result), Wrap::clamp, Wrap::clamp);
     }
@@ -119,6 +123,15 @@ public:
             rotate_row(detail, static_cast<float>(rotation_.cosine), static_cast<float>(rotation_.sine), width_);
         }
         blend_row(options_.mode, base, detail, weights(j), width_);
+    }
+
+    // Mixes the detail's channel into that of the base, at the row that was blended last.
+    void mix_extra(Extra extra, float* base) {
+        if (!mask_ || !detail_.has(extra)) return;
+        float* const detail = rows_.row(4);
+        const float* const weight = rows_.row(3);
+        detail_.extra(extra, detail);
+        for (int i = 0; i < width_; ++i) base[i] += weight[i] * (detail[i] - base[i]);
     }
 
 private:
@@ -142,7 +155,7 @@ private:
     int width_;
     MapSampler detail_;
     std::optional<Sampler> mask_;
-    Plane<float> rows_;  // x, y and z of the detail, and the weights
+    Plane<float> rows_;  // x, y and z of the detail, the weights, and an extra channel of the detail
 };
 
 BlendRows::BlendRows(const PlacedMaps& maps) : maps_(maps) {
@@ -161,6 +174,12 @@ void BlendRows::make(int j, NormalRow out) {
     for (LayerRows& layer : layers_) layer.blend(j, out);
 }
 
-void BlendRows::make_extra(Extra extra, float* out) { base_.front().extra(extra, out); }
+void BlendRows::make_extra(Extra extra, const float* base, float* out) {
+    if (base == nullptr)
+        base_.front().extra(extra, out);
+    else
+        std::copy_n(base, maps_.extent.width, out);
+    for (LayerRows& layer : layers_) layer.mix_extra(extra, out);
+}
 
 }  // namespace tex::inline v1

@@ -66,8 +66,10 @@ public:
 
     // Makes row j. `out` has room for whole vectors.
     void make(int j, NormalRow out);
-    // Samples an extra channel of the base at that row. Precondition: the base has a chain.
-    void make_extra(Extra extra, float* out);
+    // Makes an extra channel at that row: that of the base, and where a layer has a mask and the same channel, that of
+    // its detail, as far as the mask says. `base` is the row of the base; null: it is sampled. Precondition of null:
+    // the base has a chain.
+    void make_extra(Extra extra, const float* base, float* out);
 
 private:
     class MapSampler;

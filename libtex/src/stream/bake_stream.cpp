@@ -11,6 +11,7 @@
 #include <tex/types.h>
 
 #include "rows/mip_rows.h"
+#include "stream/border_slope.h"
 #include "stream/given_extras.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
@@ -55,11 +56,14 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         return opened.error();
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
     std::optional<UsualSlope> usual;  // once the strength is known
+    BorderSlope border(report.extent);
     const WatchRows seen = [&](const LevelRows& rows) {
         if (rows.level != 0) return;
         slopes.add(rows.map, 0, rows.height);
         for (int j = 0; j < rows.height; ++j) {
-            if (usual->wants(rows.first + j)) usual->add({rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)});
+            const VectorRow row{rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)};
+            if (usual->wants(rows.first + j)) usual->add(row);
+            border.add(rows.first + j, row);
         }
     };
     const HeightCounts before = heights->counts;
@@ -87,6 +91,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     report.on_ground = baked.head.ground.has_value();
     report.usual_slope = usual->slope();
     report.auto_strength = usual->strength_for_one();
+    report.border_ratio = border.ratio();
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;

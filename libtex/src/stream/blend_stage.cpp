@@ -47,9 +47,8 @@ Result<void> BlendStage::make(Strip& strip) {
         rows->make(strip.first + k, strip.normals(k));
         for (const Extra extra : kExtras) {
             if (!extras()[extra]) continue;
-            float* const to = strip.map[extra].row(k);
-            if (base_ == nullptr) rows->make_extra(extra, to);
-            if (base_ != nullptr) std::copy_n(base_->row(plane_of(extra), strip.first + k), extent().width, to);
+            const float* const base = base_ != nullptr ? base_->row(plane_of(extra), strip.first + k) : nullptr;
+            rows->make_extra(extra, base, strip.map[extra].row(k));
         }
     }
     return {};

@@ -47,7 +47,8 @@ Result<BlendFileReport> blend_stream(MapSource& base, const std::string& output,
     add_levels(flow, given->add_to(flow, blending.add_to(flow, kept)), levels, targets);
     if (const Result<void> done = flow.run(execution, sizes); !done) return done.error();
     const ExtraSet not_wanted{false, !options.source.unpack.others.alpha, false};
-    blending.judge(own | (kept & held_by_all(files)) | not_wanted);
+    const ExtraSet held = kept & held_by_all(files);
+    blending.judge(own | held | not_wanted, held);
     report.source = blending.source();
     report.details = blending.details();
     if (options.accept) {

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "rows/extra_rows.h"
 #include "stream/normal_source.h"
 #include "stream/placed_map.h"
 
@@ -60,6 +61,9 @@ Result<void> Blending::open_detail(Input& input, const LayerFile& layer, const L
     if (!lies_flat(placed)) return hold(input, execution);
     if (Result<void> opened = input.settled.open(execution); !opened) return opened;
     input.info = input.settled.info();
+    // What a mask mixes beside the normals is sampled from a map that is held.
+    const ExtraSet mixed = input.settled.extras_taken() & extras_taken();
+    if (layer.mask && (mixed.blue || mixed.alpha || mixed.length)) return hold(input, execution);
     return settle(input, execution);
 }
 
@@ -116,11 +120,13 @@ Stage& Blending::add_to(Flow& flow, ExtraSet kept) {
     return flow.add<BlendStage>(*maps_, std::move(in_step), kept, base_.rows);
 }
 
-void Blending::judge(ExtraSet accounted_for) {
-    for (Input& input : inputs_) {
+void Blending::judge(ExtraSet accounted_for, ExtraSet kept) {
+    for (std::size_t k = 0; k < inputs_.size(); ++k) {
+        Input& input = inputs_[k];
         if (input.inspector) input.inspector->report(input.info);
         if (input.extra_inspector) input.info.others = input.extra_inspector->report(input.info);
-        if (&input == &base_) input.info.others = left_out(std::move(input.info.others), accounted_for);
+        if (k == 0) input.info.others = left_out(std::move(input.info.others), accounted_for);
+        if (k > 0 && !layers_[k - 1].mask.empty()) input.info.others = left_out(std::move(input.info.others), kept);
     }
 }
 

@@ -32,8 +32,9 @@ public:
     Result<bool> alpha_is_one() { return base_.step ? base_.settled.alpha_is_one() : Result<bool>(false); }
     // Adds stages that make the rows of the result, and these data of the base. To be called once.
     Stage& add_to(Flow& flow, ExtraSet kept = {});
-    // Sets what SourceInfo says about the texels, after the last row. `accounted_for`: what of the base is not lost.
-    void judge(ExtraSet accounted_for);
+    // Sets what SourceInfo says about the texels, after the last row. `accounted_for`: what of the base is not lost;
+    // `kept`: what is kept, and mixed with that of details that have a mask.
+    void judge(ExtraSet accounted_for, ExtraSet kept);
 
     [[nodiscard]] Extent extent() const { return maps_->extent; }
     [[nodiscard]] const std::string& path() const { return base_.map().path(); }

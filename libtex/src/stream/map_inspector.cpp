@@ -138,7 +138,7 @@ Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options) {
 }
 
 std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info, Extent extent) {
-    const bool doubts_y = options.doubt_y && !info.y_known;
+    const bool doubts_y = options.doubt_y && (!info.y_known || options.unpack.y_axis);
     if (!options.inspect && !doubts_y) return std::nullopt;
     return std::optional<MapInspector>(std::in_place, extent, doubts_y);
 }
