@@ -272,6 +272,9 @@ TEST_F(Advice, HeightsThatDoNotRepeatGetAWall) {
     const Ran wall = shell(scratch_, "bake-normals dunes.png -o d.png --bumpiness 30 --no-sync");
     EXPECT_EQ(wall.code, 0);
     EXPECT_NE(wall.err.find("dunes.png: a wall along the border"), std::string::npos) << wall.err;
+    const Ran checked = shell(scratch_, "check-normals d.png --require tiles");
+    EXPECT_NE(checked.out.find("N307"), std::string::npos) << checked.out;
+    EXPECT_NE(checked.out.find("a wall runs along the border"), std::string::npos) << checked.out;
     for (const char* quiet : {"bake-normals dunes.png -o d.png --bumpiness 30 --wrap clamp --no-sync",
                               "bake-normals dunes.png -o d.png --bumpiness 30 --wrap repeat --no-sync",
                               "bake-normals waves.png -o w.png --bumpiness 30 --no-sync",
@@ -279,6 +282,8 @@ TEST_F(Advice, HeightsThatDoNotRepeatGetAWall) {
         const Ran ran = shell(scratch_, quiet);
         EXPECT_EQ(ran.err, "") << quiet;
     }
+    const Ran tiles = shell(scratch_, "check-normals w.png b.png --require tiles");
+    EXPECT_EQ(tiles.out.find("N307"), std::string::npos) << tiles.out;
 }
 
 TEST_F(Advice, AStatementThatTheTexelsContradictIsDoubted) {

@@ -70,8 +70,11 @@ Result<void> ConversionOptions::judge(Job& job, const ConvertedMap& converted, c
                  mesh);
     }
     if (converted.backward > 0) {
-        job.warn(fmt::format("{} texels point into the surface: z is negative, which shaders that rebuild z lose",
-                             converted.backward));
+        job.warn(
+            fmt::format("{} texels point into the surface: z is negative, which shaders that rebuild z lose; if "
+                        "these are many, the vectors may be those of another mesh, or of other axes: some "
+                        "programs have z up",
+                        converted.backward));
     }
     return {};
 }

@@ -18,6 +18,7 @@
 #include "checks/scaled.h"
 #include "checks/seam.h"
 #include "checks/thresholds.h"
+#include "rows/border_slope.h"
 #include "rows/codecs.h"
 #include "threads/parallel.h"
 
@@ -286,6 +287,35 @@ void check_seam(const CheckContext& context, const Seam& seam, Findings& finding
                                          : Region{0, 0, extent.height - 1, extent.width, 1}};
 }
 
+// Heights that do not repeat, baked as if they did, leave no step between opposite borders, but a wall along them.
+void check_wall(const CheckContext& context, Findings& findings) {
+    if (!findings.wants("N307") || findings.find("N307") != nullptr) return;
+    const Stored& stored = context.stored;
+    const Extent extent = stored.extent();
+    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
+    BorderSlope border(extent);
+    const auto width = static_cast<std::size_t>(extent.width);
+    std::vector<float> row(3 * width);
+    float *const xs = row.data(), *const ys = xs + width, *const zs = ys + width;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            xs[i] = stored.component(x, i, j);
+            ys[i] = stored.component(y, i, j);
+            zs[i] = z < 0 ? reconstruct_z(xs[i], ys[i]) : stored.component(z, i, j);
+            if (!std::isfinite(xs[i] + ys[i] + zs[i])) xs[i] = ys[i] = 0.0f, zs[i] = 1.0f;
+        }
+        border.add(j, {xs, ys, zs});
+    }
+    const double ratio = border.ratio();
+    if (ratio <= BorderSlope::kWall) return;
+    Finding& finding = findings.add("N307", "a wall runs along the border, " + decimal(ratio, 1) +
+                                                " times as steep as any column or row inside: heights that do not "
+                                                "repeat were baked as if they did");
+    finding.figure = ratio;
+    finding.unit = "ratio";
+    finding.confidence = 0.95;
+}
+
 }  // namespace
 
 Result<void> check_damage_rules(const CheckContext& context, Findings& findings) {
@@ -295,6 +325,7 @@ Result<void> check_damage_rules(const CheckContext& context, Findings& findings)
     check_curve(context, traces.centre, findings);
     check_alpha(context, findings);
     check_seam(context, traces.seam, findings);
+    check_wall(context, findings);
     if (!context.sampled_ok) return {};
     check_exchanged(context, findings);
     check_blocks(context, traces, findings);

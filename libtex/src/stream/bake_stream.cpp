@@ -10,8 +10,8 @@
 
 #include <tex/types.h>
 
+#include "rows/border_slope.h"
 #include "rows/mip_rows.h"
-#include "stream/border_slope.h"
 #include "stream/given_extras.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"

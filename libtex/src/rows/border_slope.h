@@ -17,6 +17,8 @@ namespace tex::inline v1 {
 // Looks at rows of a map, in any order and from any thread. The result depends on neither.
 class BorderSlope {
 public:
+    static constexpr double kWall = 2.0;  // of ratio()
+
     explicit BorderSlope(Extent extent);
 
     void add(int j, const VectorRow& row);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stream/border_slope.h"
+#include "rows/border_slope.h"
 
 #include <algorithm>
 #include <cmath>
