@@ -180,8 +180,8 @@ struct OcclusionMaps {
 //                 (1 / pi) of the integral of max(0, n.w) over the directions w above the horizon. 1 is open, 0 is
 //                 closed, as glTF and transfer() store it. Of a slope of a degrees above a wide plane, (1 + cos a) / 2.
 //     sky_view    the part of the hemisphere about the vertical that is sky: the mean of 1 - sin(max(0, h_k)) (Zaksek,
-//                 Ostir, Kokalj: Sky-View Factor as a Relief Visualization Technique, 2011). On the bottom of a wide
-//                 hemispherical bowl 0, on a plane 1.
+//                 Ostir, Kokalj: Sky-View Factor as a Relief Visualization Technique, 2011). At the bottom of a
+//                 hemispherical bowl 1 - sqrt(1/2), on a plane 1.
 //     bent        the mean of the same directions as in occlusion, with the same weights, as a unit vector; n if no
 //                 direction is open. This is what transfer() estimates by rays.
 //
