@@ -189,9 +189,9 @@ struct OcclusionMaps {
 // nothing whose rise is below distance^2 / D counts.
 //
 // Beyond the border lies, with Wrap::repeat and Wrap::mirror, what these say; with Wrap::clamp the ground goes on as
-// high as its border. As much of it counts as the map is long. Heights that are NaN are holes: they hide nothing, and
-// their texels become 1, 1 and (0, 0, 1). On the ground (HeightField::ground), horizons have the strength of the middle
-// row; normals have that of their own.
+// high as its border. As much of it counts as the map is long, and at least 256 texels. Heights that are NaN are holes:
+// they hide nothing, and their texels become 1, 1 and (0, 0, 1). On the ground (HeightField::ground), horizons have the
+// strength of the middle row; normals have that of their own.
 //
 // Method: the horizons of all texels of a line in one pass, which keeps the upper convex hull of what lies behind
 // (Timonen, Westerholm: Scalable Height Field Self-Shadowing, 2010; Barrett: Computing Skylight for 2D Height Fields by
@@ -201,7 +201,8 @@ struct OcclusionMaps {
 // is that of their horizons. Error of occlusion beside a reference of 512 directions and steps of a quarter texel, in
 // the mean over rough maps (tests/bench/OCCLUSION.md): 0.001 with 16 directions, 0.0005 with 32.
 //
-// Memory, besides the field and the maps: 20 bytes for each texel, and for each thread 1 kB for each row and column.
+// Memory, besides the field and the maps: 20 bytes for each texel, and for each thread 2 kB for each row or column of
+// the longer side, of which it touches little.
 //
 // Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite, or it
 // is

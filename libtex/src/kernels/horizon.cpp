@@ -53,8 +53,7 @@ HWY_INLINE M is_higher(Point eye, Point near, Point far, V bend) {
 // Entry `depth` of the stacks of lines from `line` on, where that is 0 or more.
 HWY_INLINE Point entry(const HullBand& band, I depth, int line) {
     const I lane = hn::Add(hn::Iota(kDI, 0), hn::Set(kDI, line));
-    const I at = hn::Add(hn::ShiftLeft<6>(hn::Max(depth, hn::Zero(kDI))), lane);
-    static_assert(kBandLines == 1 << 6);
+    const I at = hn::Add(hn::ShiftLeft<kBandBits>(hn::Max(depth, hn::Zero(kDI))), lane);
     return {hn::GatherIndex(kD, band.heights, at), hn::GatherIndex(kD, band.rows, at)};
 }
 
@@ -76,7 +75,7 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend)
         Point point = point_at(rows[0], i);
         for (int k = 1; k < row_count; ++k) {
             const Point other = point_at(rows[k], i);
-            point = select(hn::Gt(other.height, point.height), other, point);
+            point = select(hn::Ge(other.height, point.height), other, point);
         }
         Point top{hn::Load(kD, band.top_heights + i), hn::Load(kD, band.top_rows + i)};
         Point second{hn::Load(kD, band.second_heights + i), hn::Load(kD, band.second_rows + i)};
@@ -91,7 +90,7 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend)
             hidden = hn::And(hidden, hn::And(at_least(count, 2), is_higher(point, top, second, bending)));
         }
         const I lane = hn::Add(hn::Iota(kDI, 0), hn::Set(kDI, i));
-        const I at = hn::Add(hn::ShiftLeft<6>(count), lane);
+        const I at = hn::Add(hn::ShiftLeft<kBandBits>(count), lane);
         hn::ScatterIndex(point.height, kD, band.heights, at);
         hn::ScatterIndex(point.row, kD, band.rows, at);
         const M has_top = at_least(count, 1);
@@ -270,7 +269,7 @@ ScaledHeights ScaleHeights(const float* in, float scale, int count, float* out) 
     for (int i = 0; i < count; i += kLanes) {
         const V height = hn::LoadU(kD, in + i);
         const M inside = hn::FirstN(kD, static_cast<std::size_t>(count - i));
-        const M is_hole = hn::Ne(height, height);
+        const M is_hole = hn::Not(hn::Eq(height, height));  // NaN: Ne() of Highway 1.0.3 is false for it with AVX-512
         holes += hn::CountTrue(kD, hn::And(is_hole, inside));
         infinite += hn::CountTrue(kD, hn::And(hn::Eq(hn::Abs(height), infinity), inside));
         const V scaled = hn::Mul(hn::IfThenElse(is_hole, hn::Zero(kD), height), factor);

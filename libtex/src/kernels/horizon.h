@@ -12,7 +12,9 @@
 
 namespace tex::inline v1 {
 
-inline constexpr int kBandLines = 64;
+// 128 lines: with 64, a texel of 4096x4096 takes a quarter longer than one of 1024x1024.
+inline constexpr int kBandBits = 7;
+inline constexpr int kBandLines = 1 << kBandBits;
 
 // The height of a hole: so low that nothing beside it can see it. Heights are at most kMaxSlope.
 inline constexpr float kHoleHeight = -1e30f;
@@ -39,8 +41,8 @@ struct LineRow {
     float row;
 };
 
-// Adds the highest point of `count` rows to the hull of each line; the first one if several are. The rows follow one
-// another and lie before all others.
+// Adds the highest point of `count` rows to the hull of each line; the last one, which is the nearest, if several are.
+// The rows follow one another and lie before all others.
 void push_highest(HullBand& band, const LineRow* rows, int count, float bend);
 
 // A point near a texel, between two texels a and b: a_weight (a[i] - own[i]) + b_weight (b[i] - own[i]) - drop.

@@ -27,6 +27,12 @@ constexpr int kWindow = kBandLines + 2 * kMargin + 16;  // and room for a whole 
 constexpr int kHeld = 16;                               // windows: a power of two
 static_assert(kHeld > kNearRows + kFarRowsTogether && kMostNearPoints >= kNearRows + kRowsTogether + 1);
 
+constexpr int kFarAway = 64;
+
+// The steps before the first texels: as many as the field is long, and at least so many that what repeats of a small
+// field looks the same from everywhere.
+int run_in_of(int height) { return std::max(height, 256); }
+
 int floor_of(double x) { return static_cast<int>(std::floor(x)); }
 
 }  // namespace
@@ -37,7 +43,8 @@ SkyRow SkySums::at(int row, int column) {
 }
 
 HorizonSweep::Stacks::Stacks(Extent extent) {
-    const auto points = static_cast<std::size_t>(2 * std::max(extent.width, extent.height) + kHeld);
+    const int longest = std::max(extent.width, extent.height);
+    const auto points = static_cast<std::size_t>(longest + run_in_of(longest) + kHeld);
     floats_.reset(new float[2 * points * kBandLines]);
     hulls_.heights = floats_.get();
     hulls_.rows = hulls_.heights + points * kBandLines;
@@ -55,12 +62,11 @@ public:
     void run() {
         if (first_ == end_) return;
         clear_hulls(hulls_);
-        // As much as the field is long, and at least what the first texels need.
-        const int start = first_ - std::max(field_.extent().height, kNearRows + kRowsTogether);
+        const int start = first_ - run_in_of(field_.extent().height);
         int pushed = start;  // rows before this one are in the hulls
         for (int step = start; step < end_; ++step) {
             open_window(step);
-            const int group = step < first_ - kFarRowsTogether ? kFarRowsTogether : kRowsTogether;
+            const int group = step < first_ - kFarAway ? kFarRowsTogether : kRowsTogether;
             if (step - kNearRows + 1 - pushed >= group) {
                 push(pushed, step - kNearRows + 1, start);
                 pushed = step - kNearRows + 1;
