@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@
 #include "options/ground.h"
 #include "options/heights.h"
 #include "options/mips.h"
+#include "options/sky.h"
 #include "options/tiles.h"
 #include "tasks/written_levels.h"
 
@@ -39,7 +41,10 @@ private:
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] BakeFileOptions options(cli::Job& job) const;
-    [[nodiscard]] std::optional<Step> step(cli::Job& job) override { return options(job); }
+    // Maps beside the output are written by process().
+    [[nodiscard]] std::optional<Step> step(cli::Job& job) override {
+        return sky_.is_given() ? std::optional<Step>() : options(job);
+    }
     void note(cli::Job& job, const StepsReport& done) override {
         reader_.note(job, done.heights);
         note_strength(job, done);
@@ -62,6 +67,7 @@ private:
     cli::MipChainOptions mips_;
     cli::TileOptions tiles_;
     cli::ExtraOptions extras_;
+    cli::SkyOptions sky_;
 };
 
 BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -79,11 +85,14 @@ BakeNormals::BakeNormals(const cli::ProgramRow& row) : Converter(row) {
     output.add(command, cli::default_encodings(), "up");
     output.add_engines(command);
     extras_.add(command, output, nullptr);
+    sky_.add(command, files);
     mips_.add(command, false, "all in dds and ktx2, else none");
     running.add(command);
     command.example("bake-normals bricks.png -o bricks.dds --bumpiness 8", "A DXT5nm texture with all its mip levels.");
     command.example("bake-normals bricks.png -o bricks_nh.png --format rgba8 --alpha height",
                     "Normals and heights in one file, for parallax mapping.");
+    command.example("bake-normals bricks.png -o bricks.dds --occlusion-out bricks_ao.png",
+                    "Normals and the ambient occlusion of the same surface.");
     command.example("bake-normals maps/*.png --out-dir out --kernel scharr --json", "A folder at once, with a report.");
     command.example("bake-normals rock.exr -o rock.ktx2 --format bc5 --height-range 0.15 --world-size 2 --y down",
                     "A rock face 2 m wide with 15 cm of relief, as BC5 for a renderer with green down.");
@@ -96,6 +105,7 @@ cli::OutputRules BakeNormals::rules() const {
     rules.amend = [this](cli::Task& task) {
         cli::HeightReader::add_header_file(task);
         extras_.amend(task);
+        sky_.amend(task);
     };
     if (files.tiles) rules.relate = [this](std::vector<cli::Task>& tasks) { tiles_.relate(tasks, wrap_); };
     return rules;
@@ -105,6 +115,9 @@ Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
     if (files.tiles && (reader_.strength.measured || reader_.heights.options.deband != Deband::off))
         throw cli::UsageError("--tiles contradicts --deband and --bumpiness auto, which look at whole pictures");
+    if (files.tiles && (sky_.is_given() || extras_.has_occlusion()))
+        throw cli::UsageError("--tiles contradicts occlusion, for which horizons may lie in any other tile");
+    sky_.check(command, extras_.has_occlusion());
     return reader_.color.check();
 }
 
@@ -124,6 +137,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
     options.mip = mips_.options(mips_.levels_for(job.task), wrap_);
     extras_.apply(options.mip);
     options.others = extras_.inputs(job);
+    sky_.apply(options, extras_.has_occlusion());
     constexpr bool kKnown = true;
     const cli::OutputOptions own = output.of(job.task.engine);
     options.pack = own.pack_options(own.format.value_or(default_encoding(job.task.container)), YAxis::up, kKnown);
@@ -135,7 +149,7 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
 
 Result<void> BakeNormals::process(cli::Job& job) {
     const BakeFileOptions with = options(job);
-    const auto baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    auto baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
     if (!baked) return with_remedy(baked.error());
     reader_.note(job, baked->heights);
     cli::wrote_levels(job, job.task.output, baked->levels);
@@ -150,7 +164,7 @@ Result<void> BakeNormals::process(cli::Job& job) {
     warn_of_border(job, baked->border_ratio);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
-    return {};
+    return sky_.write(job, std::move(baked->occlusion), with.pack.y_axis);
 }
 
 void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding) {

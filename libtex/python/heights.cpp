@@ -74,6 +74,17 @@ py::object debanded(Call& call, Relief& relief, Running& running) {
     return result;
 }
 
+// The maps that are wanted, by the names of OcclusionMaps.
+py::object hidden(Call& call, Relief& relief, OcclusionOptions& options, BakeOptions& how, Running& running) {
+    const HeightField field = field_from(call["height"], "height", relief, false);  // occlusion() checks
+    OcclusionMaps maps = running.run([&](const Execution& e) { return occlusion(field, options, how, e); });
+    py::dict result;
+    if (options.occlusion) result["occlusion"] = array_of(std::move(maps.occlusion));
+    if (options.sky_view) result["sky_view"] = array_of(std::move(maps.sky_view));
+    if (options.bent) result["bent"] = array_of(std::move(maps.bent));
+    return result;
+}
+
 }  // namespace
 
 void add_heights(Module& module) {
@@ -106,6 +117,11 @@ void add_heights(Module& module) {
             const HeightField field = field_from(call["height"], "height", relief, false);  // bake() checks
             return array_of(running.run([&](const Execution& e) { return bake(field, options, e); }));
         });
+    module.verb<Relief, OcclusionOptions, BakeOptions, Running>(
+        "occlusion", {{"height", kHeights}}, "dict[str, NDArray[np.float32]]",
+        "A dict of the maps that are wanted: 'occlusion' and 'sky_view' are arrays (height, width), 'bent' is one of "
+        "(height, width, 3). `height`, bumpiness and wrap are those of bake(); texels that are NaN are holes.",
+        hidden);
     module.verb<Running>("slope_range", {{"n", kMapSource}}, "dict[str, tuple[float, float]]",
                          "The range of slopes in a normal map, {'x': (least, greatest), 'y': (least, greatest)}: rise "
                          "per texel width to "

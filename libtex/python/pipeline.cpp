@@ -53,7 +53,8 @@ std::function<PackOptions(const SourceInfo&)> pack_by(const PackFields& fields, 
 
 constexpr const char* kOthers = "dict[str, ArrayLike | float | str] | None";
 
-// The data of a dict: of each of blue, alpha and length a number, an array (height, width), or the word 'heights'.
+// The data of a dict: of each of blue, alpha and length a number, an array (height, width), or a word: 'heights' or
+// 'occlusion'.
 ExtraInputs extras_from(py::handle given, bool has_heights) {
     ExtraInputs inputs;
     if (given.is_none()) return inputs;
@@ -63,9 +64,10 @@ ExtraInputs extras_from(py::handle given, bool has_heights) {
         const std::string name = fmt::format("others['{}']", word);
         ExtraData& data = inputs[extra_from(word, "others")].emplace();
         if (py::isinstance<py::str>(value)) {
-            need(has_heights && text_from(value, name) == "heights", name,
-                 has_heights ? "the word is 'heights'" : "must be a number or an array");
-            data.heights = true;
+            const std::string what = text_from(value, name);
+            need(has_heights && (what == "heights" || what == "occlusion"), name,
+                 has_heights ? "the word is 'heights' or 'occlusion'" : "must be a number or an array");
+            (what == "heights" ? data.heights : data.occlusion) = true;
         } else if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) {
             data.value = Convert<float>::from(value, name);
         } else {

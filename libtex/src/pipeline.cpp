@@ -13,6 +13,7 @@
 #include "stream/bake_stream.h"
 #include "stream/blend_stream.h"
 #include "stream/given_extras.h"
+#include "stream/occluded_heights.h"
 #include "stream/pack_stream.h"
 #include "threads/no_throw.h"
 
@@ -31,6 +32,11 @@ Result<void> validate(const BakeFileOptions& options) {
     if (auto valid = check_one_output(options.write, static_cast<bool>(options.level_names)); !valid) return valid;
     if (auto valid = validate(options.bake); !valid) return valid;
     if (!std::isfinite(options.vertical_scale)) return bad_option("vertical_scale: must be finite");
+    if (options.occlusion) {
+        if (auto valid = validate(*options.occlusion); !valid) return valid;
+    }
+    if (options.tile && wants_occlusion(options))
+        return bad_option("occlusion: not for a tile, whose horizons may lie in any other one");
     if (auto valid = validate(options.mip); !valid) return valid;
     return validate(options.pack);
 }

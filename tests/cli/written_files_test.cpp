@@ -43,6 +43,8 @@ struct Step {
     std::string step, match, name, settings;
 };
 const std::vector<Step> kSteps = {
+    {"bake", "h.png", "n.png",
+     R"(occlusion-out = "w/ao.png", sky-view-out = "w/sky.png", bent-out = "w/bent.png", occlusion-directions = 4)"},
     {"integrate", "n.png", "h.png", R"(curvature-out = "w/c.png", curl-out = "w/curl.png")"},
     {"mip", "n.png", "n.dds", R"(roughness-out = "w/r.dds")"},
     {"unpack", "t.png", "u.png", R"(swizzle = "rg", blue-out = "w/b.png", alpha-out = "w/a.png")"},

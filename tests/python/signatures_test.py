@@ -139,6 +139,7 @@ STRUCTURES = [
     ("height_field", "height.h", "HeightOptions"),
     ("build_mip_chain", "mip.h", "MipOptions"),
     ("curvature", "surface.h", "CurvatureOptions"),
+    ("occlusion", "surface.h", "OcclusionOptions"),
     ("integrate", "surface.h", "IntegrateOptions"),
     ("pack", "pack.h", "PackOptions"),
     ("unpack", "pack.h", "UnpackOptions"),

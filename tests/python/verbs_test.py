@@ -273,6 +273,15 @@ def test_curvature_of_a_dome_is_the_inverse_of_its_radius():
     assert bend["least"] <= bend["rms"] <= bend["greatest"]
 
 
+def test_occlusion_of_a_valley_follows_its_formula():
+    heights = np.abs(np.arange(129) - 64.0)[np.newaxis].repeat(129, axis=0).astype(np.float32)
+    maps = tex.occlusion(heights, wrap="clamp", directions=64, bent=True)
+    assert set(maps) == {"occlusion", "bent"} and maps["bent"].shape == (129, 129, 3)
+    assert abs(maps["occlusion"][64, 64] - 2**-0.5) < 0.005
+    with pytest.raises(ValueError, match="directions"):
+        tex.occlusion(heights, directions=2)
+
+
 def test_large_levels_are_left_out(bricks, heights):
     chain = tex.build_mip_chain(tex.bake(heights), max_side=100)
     assert [level.shape[0] for level in chain] == [64, 32, 16, 8, 4, 2, 1]

@@ -33,10 +33,10 @@ struct Names {
 
 template <class O>
 class Fields : public testing::Test {};
-using Structures =
-    testing::Types<BakeOptions, HeightOptions, ColorOptions, MipOptions, RdoOptions, PackOptions, UnpackOptions,
-                   Scaling, BlendOptions, Layer, IntegrateOptions, CurvatureOptions, ConvertOptions, TransferOptions,
-                   WriteOptions, ReadOptions, Light, Material, Camera, Detail, Parallax, PreviewOptions>;
+using Structures = testing::Types<BakeOptions, HeightOptions, ColorOptions, MipOptions, RdoOptions, PackOptions,
+                                  UnpackOptions, Scaling, BlendOptions, Layer, IntegrateOptions, CurvatureOptions,
+                                  OcclusionOptions, ConvertOptions, TransferOptions, WriteOptions, ReadOptions, Light,
+                                  Material, Camera, Detail, Parallax, PreviewOptions>;
 TYPED_TEST_SUITE(Fields, Structures);
 
 TYPED_TEST(Fields, DefaultsAreAcceptedAndNamesDiffer) {

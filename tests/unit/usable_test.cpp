@@ -58,6 +58,7 @@ TEST(Usable, MapsWithoutTexelsAreRefused) {
     EXPECT_EQ(refusal(scale(NormalMap(), 2.0f)), empty);
     EXPECT_EQ(refusal(integrate({})), empty);
     EXPECT_EQ(refusal(curvature({})), empty);
+    EXPECT_EQ(refusal(occlusion({})), "the height field has no texels");
     EXPECT_EQ(refusal(compare({}, {})), empty);
     EXPECT_EQ(refusal(compare(flat({2, 2}), flat({2, 1}))), "the maps have different extents");
     EXPECT_EQ(refusal(heat_map({}, 1.0)), empty);

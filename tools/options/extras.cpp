@@ -2,6 +2,8 @@
 
 #include "options/extras.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,8 @@
 
 namespace tex::cli {
 namespace {
+
+constexpr const char* kOcclusion = "occlusion";  // of the heights that are baked
 
 struct LayoutRow {
     Layout layout;
@@ -63,6 +67,8 @@ void ExtraOptions::take(const std::string& text, const ExtraOption& row) {
         choice.from = Choice::From::kept;
     } else if (reads_ == nullptr && row.heights != nullptr && text == row.heights) {
         choice.from = Choice::From::heights;
+    } else if (reads_ == nullptr && text == kOcclusion) {
+        choice.from = Choice::From::occlusion;
     } else if (is_number) {
         choice.from = Choice::From::number;
         choice.number = parse_float(text, {0.0, 1.0});
@@ -82,8 +88,9 @@ void ExtraOptions::add_option(Command& command, const ExtraOption& row) {
         option.words = {{row.kept, "what it holds in the input"}};
         if (row.is_kept) option.preset = row.kept;
         if (row.is_kept) choices_[row.extra].from = Choice::From::kept;
-    } else if (row.heights != nullptr) {
-        option.words = {{row.heights, "the heights that are baked, 0 to 1"}};
+    } else {
+        if (row.heights != nullptr) option.words = {{row.heights, "the heights that are baked, 0 to 1"}};
+        option.words.push_back({kOcclusion, "the occlusion of the heights that are baked: 1 is open"});
     }
     option.words.push_back({"none", row.nothing});
     option.completes = Completes::files;
@@ -115,7 +122,11 @@ void ExtraOptions::set_layout(const Command& command, OutputOptions& output) {
     if (!layout_) return;
     for (const LayoutRow& row : kLayouts) {
         if (row.layout != *layout_) continue;
-        if (row.blue && !command.given("--blue")) {
+        if (row.blue == ExtraKind::occlusion && reads_ == nullptr && !command.given("--blue")) {
+            choices_.blue.from = Choice::From::occlusion;
+            if (row.alpha == ExtraKind::height && !command.given("--alpha"))
+                choices_.alpha.from = Choice::From::heights;
+        } else if (row.blue && !command.given("--blue")) {
             throw UsageError(fmt::format("--layout {} has {} in blue: give --blue FILE, or --blue 1 for none",
                                          name_of(kLayoutNames, row.layout), name_of(kExtraKindNames, *row.blue)));
         }
@@ -170,6 +181,7 @@ std::optional<ExtraData> ExtraOptions::data(const Choice& choice, Job& job) cons
         case Choice::From::nothing:
         case Choice::From::kept: return std::nullopt;
         case Choice::From::heights: data.heights = true; break;
+        case Choice::From::occlusion: data.occlusion = true; break;
         case Choice::From::number: data.value = choice.number; break;
         case Choice::From::file: {
             const ChannelFile file = file_for(choice, job.task);
@@ -183,6 +195,11 @@ ExtraInputs ExtraOptions::inputs(Job& job) const {
     ExtraInputs inputs;
     for (const Extra extra : kExtras) inputs[extra] = data(choices_[extra], job);
     return inputs;
+}
+
+bool ExtraOptions::has_occlusion() const {
+    return std::any_of(std::begin(kExtras), std::end(kExtras),
+                       [this](Extra extra) { return choices_[extra].from == Choice::From::occlusion; });
 }
 
 void ExtraOptions::apply(UnpackOptions& unpack) const {

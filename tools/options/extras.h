@@ -48,10 +48,12 @@ public:
     [[nodiscard]] ExtraSet accounted_for(ExtraSet held) const;
     // Whether z is stored.
     [[nodiscard]] bool stores_z() const { return choices_.blue.from == Choice::From::nothing; }
+    // Whether occlusion of the heights that are baked goes beside the normals.
+    [[nodiscard]] bool has_occlusion() const;
 
 private:
     struct Choice {
-        enum class From { nothing, kept, heights, number, file };
+        enum class From { nothing, kept, heights, occlusion, number, file };
         From from = From::nothing;
         float number = 1.0f;
         ChannelFile file = {};  // its file is a pattern

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <tex/mip.h>
+#include <tex/pack.h>
 #include <tex/preview.h>
 
 #include "cli/text.h"
@@ -78,6 +79,18 @@ Result<void> MapOutput::write(Job& job, Plane<float> values, Json& report) const
     chain.levels.push_back(std::move(values));
     const Format format = map_format(container_of_path(path_of(job.task)));
     const auto texture = pack_roughness(chain, format, Effort::normal, {job.threads(), {}});
+    if (!texture) return texture.error();
+    return write(job, *texture, report);
+}
+
+Result<void> MapOutput::write(Job& job, NormalMap normals, YAxis y, Json& report) const {
+    const Container container = container_of_path(path_of(job.task));
+    MipChain chain;
+    chain.levels.push_back(std::move(normals));
+    PackOptions with;
+    with.encoding = can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
+    with.y_axis = y;
+    const auto texture = pack(chain, with, {job.threads(), {}});
     if (!texture) return texture.error();
     return write(job, *texture, report);
 }

@@ -34,6 +34,8 @@ public:
     // name to `report`.
     [[nodiscard]] Result<void> write(Job& job, Plane<float> values, Json& report) const;
     [[nodiscard]] Result<void> write(Job& job, const Image& colors, Json& report) const;
+    // Writes normals as bytes, or as half floats in exr. Adds as above.
+    [[nodiscard]] Result<void> write(Job& job, NormalMap normals, YAxis y, Json& report) const;
     // Writes a texture that its file type can hold.
     [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
     // The file type. Throws UsageError as amend().

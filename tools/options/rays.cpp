@@ -299,16 +299,8 @@ Result<void> TransferMaps::write(Job& job, TransferredMaps& maps, YAxis y) const
 // Into report[key].
 Result<void> TransferMaps::write_normals(Job& job, const MapOutput& output, NormalMap normals, YAxis y,
                                          const char* key) const {
-    const Container container = output.container_for(job.task);
-    MipChain chain;
-    chain.levels.push_back(std::move(normals));
-    PackOptions with;
-    with.encoding = can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
-    with.y_axis = y;
-    const auto texture = pack(chain, with, {job.threads(), {}});
-    if (!texture) return texture.error();
     Json report;
-    if (auto done = output.write(job, *texture, report); !done) return done;
+    if (auto done = output.write(job, std::move(normals), y, report); !done) return done;
     job.report[key] = std::move(report);
     return {};
 }

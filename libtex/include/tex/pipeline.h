@@ -19,6 +19,7 @@
 #include <tex/mesh.h>
 #include <tex/mip.h>
 #include <tex/pack.h>
+#include <tex/surface.h>
 #include <tex/types.h>
 
 namespace tex::inline v1 {
@@ -74,6 +75,7 @@ struct ExtraData {
         {};                                    // or, if set, what this returns: a map of the extent of the base level,
     bool heights = false;                      // or, if set, the heights that are baked; only for bake_file(),
     std::optional<ExtraPicture> picture = {};  // or, if set, this picture, which has the extent of the base level
+    bool occlusion = false;  // or, if set, the occlusion of the heights that are baked; only for bake_file()
 };
 using ExtraInputs = Extras<std::optional<ExtraData>>;
 
@@ -113,6 +115,9 @@ struct BakeFileOptions {
     std::vector<MoreFile> more;  // appear after `output`, in this order
     ExtraInputs others;          // every output must have room for them
     bool slopes = false;         // whether BakeFileReport::slopes is computed
+    // If set, BakeFileReport::occlusion gets what occlusion() makes of the heights. Its directions and its distance are
+    // also those of ExtraData::occlusion. Not for a tile. Texels that fill_invalid has filled are holes.
+    std::optional<OcclusionOptions> occlusion;
 
     // Called when all rows were read, and before any file appears: an error means that none does. Must not throw.
     std::function<Result<void>(const HeightReport&)> accept;
@@ -140,6 +145,7 @@ struct BakeFileReport {
     SlopeRange slopes;              // zeros unless BakeFileOptions::slopes is set
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
+    OcclusionMaps occlusion;        // empty unless BakeFileOptions::occlusion is set
 };
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of type `container`.
@@ -148,6 +154,7 @@ struct BakeFileReport {
 //   an interlaced PNG   all rows, as they are decoded
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
 //   deband              all heights, and what deband() needs besides: 13 bytes a texel
+//   occlusion           all heights, the maps, and what occlusion() needs besides: 28 bytes a texel and the maps
 //   TIFF, JPEG out      all packed texels: the reader process encodes whole pictures
 //   EXR out             compressed tiles of smaller levels, until the base level is done: up to 4 MB, and the rest in a
 //                       file without a name in the folder of the output

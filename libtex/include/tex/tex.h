@@ -47,7 +47,7 @@
 //     height.h    height_field(), deband(), strength of units, colour spaces
 //     bake.h      bake()                                mip.h       build_mip_chain(), build_roughness_chain()
 //     blend.h     scale(), blend()                      pack.h      pack(), unpack(), pack_roughness()
-//     surface.h   integrate(), curvature()              mesh.h      meshes, models, tangents, convert, transfer()
+//     surface.h   integrate(), curvature(), occlusion() mesh.h      meshes, models, tangents, convert, transfer()
 //     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), steps, write_model()
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
 //     repair.h    repair()                              tex_c.h     the same for C, Rust and C#

@@ -26,4 +26,13 @@ void each_field(O& o, F& f) {
     f("wrap", axes(o.wrap_x, o.wrap_y), kWrapNames);
 }
 
+template <Of<OcclusionOptions> O, class F>
+void each_field(O& o, F& f) {
+    f("directions", o.directions, Range{4.0, 1024.0});
+    f("distance", o.distance, kNotNegative);
+    f("occlusion", o.occlusion);
+    f("sky_view", o.sky_view);
+    f("bent", o.bent);
+}
+
 }  // namespace tex::inline v1

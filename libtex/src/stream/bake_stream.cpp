@@ -15,6 +15,7 @@
 #include "stream/given_extras.h"
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
+#include "stream/occluded_heights.h"
 #include "stream/open_heights.h"
 #include "stream/slope_collector.h"
 #include "stream/targets.h"
@@ -34,12 +35,14 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     }
     // Progress: debanding and filling come before the rest of the work.
     const bool debands = options.heights.deband != Deband::off;
-    const double filled = debands ? 0.7 : options.heights.fill_invalid ? 0.5 : 0.0;
+    const bool occludes = wants_occlusion(options);
+    const double filled = debands ? 0.7 : occludes ? 0.1 : options.heights.fill_invalid ? 0.5 : 0.0;
     const Gradient gradient = gradient_of(options.bake);
     const RowOrder order = all_take_any_order(container, options.more) ? RowOrder::any : RowOrder::from_the_top;
     Result<Heights> heights = open_heights(file, order, options, gradient, part_of(execution, 0.0, filled));
     if (!heights) return heights.error();
-    const Execution onward = part_of(execution, filled, 1.0);
+    const double occluded = occludes ? 0.9 : filled;
+    const Execution onward = part_of(execution, occluded, 1.0);
     const Extent extent = heights->window ? heights->window->tile : heights->rows->extent();
     BakeFileReport report;
     const int first = first_level(options.mip, extent);
@@ -49,7 +52,14 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
     add_targets(options.more, {}, files);
-    const Result<GivenExtras> given = GivenExtras::read(options.others, extent, files);
+    if (occludes) {
+        auto maps = occluded_heights(std::move(heights->with_holes), head_of(*heights, options), options,
+                                     part_of(execution, filled, occluded));
+        if (!maps) return maps.error();
+        report.occlusion = std::move(*maps);
+    }
+    const Result<GivenExtras> given =
+        GivenExtras::read(with_occlusion(options.others, report.occlusion), extent, files);
     if (!given) return given.error();
     Targets targets;
     if (const Result<void> opened = targets.open(files, given->planes(), report.extent, report.levels); !opened)
@@ -84,6 +94,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         if (const Result<void> accepted = options.accept(report.heights); !accepted) return accepted.error();
     }
     if (const Result<void> done = targets.commit(); !done) return done.error();
+    if (!options.occlusion || !options.occlusion->occlusion) report.occlusion.occlusion = {};
     report.bytes = targets.bytes(Content::normals);
     report.rdo = targets.rdo();
     report.strength = middle_strength(baked.head, extent);

@@ -48,8 +48,8 @@ int first_nan(const Plane<float>& heights, int j) {
 
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
-                                                const Execution& execution, HeightCounts& counts,
-                                                DebandReport& deband) {
+                                                const Execution& execution, HeightCounts& counts, DebandReport& deband,
+                                                Plane<float>* with_holes) {
     // Progress: reading takes this part, and debanding up to that one.
     const double read_to = options.deband != Deband::off ? 0.2 : 0.6;
     const double debanded_to = options.deband == Deband::off ? read_to : options.fill_invalid ? 0.8 : 1.0;
@@ -77,6 +77,7 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
         deband_heights(heights, options.wrap_x, options.wrap_y, options.deband, execution, {read_to, debanded_to});
     if (!smooth) return smooth.error();
     deband = *smooth;
+    if (with_holes != nullptr) *with_holes = heights.clone();
     if (counts.invalid > 0) {
         const auto filled =
             fill_from_nearest(heights.view(), options.wrap_x, options.wrap_y, execution, {debanded_to, 1.0});

@@ -17,11 +17,13 @@
 namespace tex::inline v1 {
 
 // Reads the one-channel heights of the picture `rows` as `source` and `options` say, debands and fills them. `linear`
-// may be null; messages name the picture `input`. Adds what it finds to `counts` and `deband`. Precondition: no row has
-// been decoded yet. Errors: those of reading and of LinearRows; bad_data (no texel is valid, or one is not and
-// options.fill_invalid is not set); cancelled. May throw std::bad_alloc.
+// may be null; messages name the picture `input`. Adds what it finds to `counts` and `deband`. `with_holes` may be
+// null, or gets the debanded heights, NaN where they are filled. Precondition: no row has been decoded yet. Errors:
+// those of reading and of LinearRows; bad_data (no texel is valid, or one is not and options.fill_invalid is not set);
+// cancelled. May throw std::bad_alloc.
 Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::string& input, const HeightSource& source,
                                                 const HeightOptions& options, const LinearRows* linear,
-                                                const Execution& execution, HeightCounts& counts, DebandReport& deband);
+                                                const Execution& execution, HeightCounts& counts, DebandReport& deband,
+                                                Plane<float>* with_holes = nullptr);
 
 }  // namespace tex::inline v1

@@ -140,7 +140,10 @@ ExtraSet heights_given(const ExtraInputs& inputs) {
 }
 
 Result<void> check_no_heights(const ExtraInputs& inputs) {
-    if (heights_given(inputs) == ExtraSet()) return {};
+    const auto is_of_heights = [&](Extra extra) {
+        return inputs[extra] && (inputs[extra]->heights || inputs[extra]->occlusion);
+    };
+    if (extras_with(is_of_heights) == ExtraSet()) return {};
     return bad_option("others: there are no heights, only normals");
 }
 

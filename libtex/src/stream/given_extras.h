@@ -19,7 +19,7 @@ namespace tex::inline v1 {
 [[nodiscard]] ExtraSet planes_given(const ExtraInputs& inputs);
 // The extras that are the heights which are baked.
 [[nodiscard]] ExtraSet heights_given(const ExtraInputs& inputs);
-// Errors: bad_option if any are, because nothing is baked.
+// Errors: bad_option if any are, or are to be their occlusion, because nothing is baked.
 [[nodiscard]] Result<void> check_no_heights(const ExtraInputs& inputs);
 
 // Whether levels that are built of an alpha of 1 may differ from 1: by the variance of normals, or by rounding.

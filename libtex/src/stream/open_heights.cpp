@@ -13,6 +13,7 @@
 #include "stream/filled_heights.h"
 #include "stream/height_stage.h"
 #include "stream/last_rows.h"
+#include "stream/occluded_heights.h"
 #include "stream/source_stage.h"
 #include "stream/terrain_rows.h"
 #include "threads/parallel.h"
@@ -51,7 +52,9 @@ Result<void> prepare(const InputFile& file, const BakeFileOptions& options, Heig
 }
 
 // Whether a stage needs all rows at once.
-bool needs_all_rows(const HeightOptions& options) { return options.fill_invalid || options.deband != Deband::off; }
+bool needs_all_rows(const BakeFileOptions& options) {
+    return options.heights.fill_invalid || options.heights.deband != Deband::off || wants_occlusion(options);
+}
 
 // The rows are heights that take_heights() has cleaned.
 void take_cleaned(Heights& heights) {
@@ -63,10 +66,10 @@ void take_cleaned(Heights& heights) {
 }
 
 // Debands heights, and fills invalid ones.
-Result<void> fill(InputFile& file, const Execution& execution, Heights& heights) {
-    Result<std::unique_ptr<RowSource>> filled =
-        fill_heights(*heights.rows, file.path(), heights.source, heights.options,
-                     heights.linear ? &*heights.linear : nullptr, execution, heights.counts, heights.deband);
+Result<void> fill(InputFile& file, const Execution& execution, bool keeps_holes, Heights& heights) {
+    Result<std::unique_ptr<RowSource>> filled = fill_heights(
+        *heights.rows, file.path(), heights.source, heights.options, heights.linear ? &*heights.linear : nullptr,
+        execution, heights.counts, heights.deband, keeps_holes ? &heights.with_holes : nullptr);
     if (!filled) return filled.error();
     heights.rows = std::move(*filled);
     take_cleaned(heights);
@@ -149,11 +152,12 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
     Result<Heights> opened = options.tile ? open_terrain(file, options, gradient) : open_height_rows(file, options);
     if (!opened) return opened.error();
     Heights heights = std::move(*opened);
-    if (needs_all_rows(options.heights)) {
-        if (const Result<void> filled = fill(file, execution, heights); !filled) return filled.error();
+    if (needs_all_rows(options)) {
+        const Result<void> filled = fill(file, execution, wants_occlusion(options), heights);
+        if (!filled) return filled.error();
     }
     if (order == RowOrder::from_the_top && heights.options.wrap_y == Wrap::repeat) {
-        const double done = needs_all_rows(options.heights) ? 1.0 : 0.0;
+        const double done = needs_all_rows(options) ? 1.0 : 0.0;
         const Result<void> found = find_last_rows(file, options, gradient, part_of(execution, done, 1.0), heights);
         if (!found) return found.error();
     }

@@ -45,6 +45,7 @@ struct Heights {
     std::optional<Ground> ground;         // as HeightReport::ground
     std::string ground_remark;            // as HeightReport::ground_remark
     std::optional<TerrainWindow> window;  // what the rows are, if the picture is a tile of a terrain
+    Plane<float> with_holes;              // if occlusion is wanted: all heights, NaN where they are filled
 };
 
 enum class RowOrder { any, from_the_top };

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// bake-normals --occlusion-out, --sky-view-out, --bent-out, --blue occlusion: what heights hide, beside their normals.
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <tex/tex.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+namespace {
+
+class BakeOcclusion : public testing::Test {
+protected:
+    BakeOcclusion() { std::filesystem::copy_file(TEX_SOURCE_DIR "/samples/bricks.png", scratch_.path("h.png")); }
+    Ran run(const std::string& line) const {
+        Ran ran = shell(scratch_, line + " --no-sync");
+        EXPECT_EQ(ran.code, 0) << line << '\n' << ran.err;
+        return ran;
+    }
+    void refuses(const std::string& line, const std::string& words) {
+        const auto before = scratch_.list();
+        const Ran ran = shell(scratch_, line);
+        EXPECT_EQ(ran.code, 2) << line << '\n' << ran.err;
+        EXPECT_NE(ran.err.find(words), std::string::npos) << ran.err;
+        EXPECT_EQ(scratch_.list(), before) << line;
+    }
+    [[nodiscard]] Image image(const std::string& name) const { return read_image(scratch_.path(name)).value(); }
+    // The largest difference between a channel of a file and a plane.
+    [[nodiscard]] float difference(const std::string& name, std::size_t channel, const Plane<float>& plane) const {
+        const Image picture = image(name);
+        EXPECT_EQ(picture.extent(), plane.extent());
+        float largest = 0.0f;
+        for (int j = 0; j < plane.extent().height; ++j) {
+            for (int i = 0; i < plane.extent().width; ++i)
+                largest = std::max(largest, std::abs(picture.planes[channel].at(i, j) - plane.at(i, j)));
+        }
+        return largest;
+    }
+    // What the library makes of the sample.
+    [[nodiscard]] OcclusionMaps maps(const OcclusionOptions& options, float blur = 0.0f) const {
+        HeightOptions heights;
+        heights.blur_sigma = blur;
+        auto field = height_field(image("h.png"), heights);
+        field->bumpiness_x = field->bumpiness_y = 6.0f;
+        return std::move(*occlusion(*field, options));
+    }
+
+    Scratch scratch_;
+};
+
+TEST_F(BakeOcclusion, FilesHoldWhatTheLibraryMakes) {
+    const Ran ran = run(
+        "bake-normals h.png -o n.png --bumpiness 6 --occlusion-out ao.png --sky-view-out sky.exr --bent-out bent.png "
+        "--occlusion-directions 12 --json");
+    const auto report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["occlusion"]["output"], "ao.png");
+    EXPECT_EQ(report["sky_view"]["output"], "sky.exr");
+    EXPECT_EQ(report["bent"]["output"], "bent.png");
+    const OcclusionMaps is = maps({12, 0.0f, true, true, true});
+    EXPECT_LT(difference("ao.png", 0, is.occlusion), 1.0f / 65535.0f);
+    EXPECT_EQ(difference("sky.exr", 0, is.sky_view), 0.0f);
+    const auto bent = read_normals(scratch_.path("bent.png"));
+    ASSERT_TRUE(bent);
+    EXPECT_LT(std::abs(bent->chain.levels[0].x.at(100, 50) - is.bent.x.at(100, 50)), 0.01f);
+    // The normals are those of a bake without maps beside them.
+    run("bake-normals h.png -o alone.png --bumpiness 6");
+    EXPECT_EQ(scratch_.read("n.png"), scratch_.read("alone.png"));
+}
+
+TEST_F(BakeOcclusion, OcclusionGoesBesideTheNormals) {
+    run("bake-normals h.png -o nb.png --format rgba8 --bumpiness 6 --blue occlusion --alpha height --blur 1.5");
+    const OcclusionMaps is = maps({}, 1.5f);
+    EXPECT_LE(difference("nb.png", 2, is.occlusion), 0.51f / 255.0f);
+    EXPECT_LE(difference("nb.png", 3, image("h.png").planes[0]), 1.0f);
+    run("bake-normals h.png -o nl.png --format rgb16 --bumpiness 6 --length occlusion --occlusion-distance 20");
+    // LabPBR of heights alone: green down, occlusion in blue, heights in alpha.
+    run("bake-normals h.png -o pbr.png --layout labpbr --bumpiness 6");
+    run("bake-normals h.png -o down.png --format rgba8 --bumpiness 6 --y down");
+    EXPECT_LE(difference("pbr.png", 2, maps({}).occlusion), 0.51f / 255.0f);
+    EXPECT_EQ(difference("pbr.png", 1, image("down.png").planes[1]), 0.0f);
+    EXPECT_LE(difference("pbr.png", 3, image("h.png").planes[0]), 0.51f / 255.0f);
+}
+
+TEST_F(BakeOcclusion, BytesDoNotDependOnThreads) {
+    for (const char* const threads : {"1", "3"}) {
+        const std::string t = threads;
+        run("bake-normals h.png -o n" + t + ".dds --bumpiness 6 --occlusion-out ao" + t + ".png --threads " + t);
+    }
+    EXPECT_EQ(scratch_.read("ao1.png"), scratch_.read("ao3.png"));
+}
+
+TEST_F(BakeOcclusion, RefusesWhatCannotBe) {
+    refuses("bake-normals h.png -o n.png --occlusion-distance 4", "needs --occlusion-out");
+    refuses("bake-normals h.png -o n.png --occlusion-out -", "needs a file");
+    refuses("bake-normals h.png -o n.png --occlusion-out ao.png --occlusion-directions 3", "at least 4 and at most 1024");
+    refuses("bake-normals h.png -o n.png --occlusion-out n.png", "n.png");
+}
+
+}  // namespace
+}  // namespace tex::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// sky.h: the option group of what heights hide: occlusion, sky view and bent normals beside the output.
+
+#pragma once
+
+#include <tex/pipeline.h>
+
+#include "cli/command.h"
+#include "options/maps.h"
+#include "tasks/job.h"
+
+namespace tex::cli {
+
+// --occlusion-out, --sky-view-out, --bent-out, --occlusion-directions, --occlusion-distance.
+class SkyOptions {
+public:
+    void add(Command& command, const FileOptions& files);
+    void amend(Task& task) const;
+
+    // Whether a map is written.
+    [[nodiscard]] bool is_given() const;
+    // Sets what is made. `is_extra`: occlusion goes beside the normals, too.
+    void apply(BakeFileOptions& options, bool is_extra) const;
+    // Throws UsageError if an option has no effect.
+    void check(const Command& command, bool is_extra) const;
+
+    // Write what the user wants, and add it to the job's report. `y` is that of the bent normals.
+    [[nodiscard]] Result<void> write(Job& job, OcclusionMaps maps, YAxis y) const;
+
+private:
+    [[nodiscard]] static Result<void> write_plane(Job& job, const MapOutput& output, Plane<float> values,
+                                                  const char* key);
+
+    OcclusionOptions options_;
+    MapOutput occlusion_, sky_view_, bent_;
+};
+
+}  // namespace tex::cli
