@@ -47,6 +47,12 @@ PLACES = {
     "phaser": [("image", OWN), ("image, flipX", OWN), ("image, flipY", OWN), ("image, rotated by 90 degrees", OWN)],
     "cesium": [], "filament": [], "model-viewer": [],
 }
+# What the gate draws, in the first two places of an engine, and what must be seen there.
+GATE = {
+    "three": {"PNG, +Y": ("bump", "y wrong in the lower left corner"),
+              "KTX2, bc5": ("y wrong in the lower left corner", "bump")},
+    "babylon": {"PNG, +Y": ("dent", "bump"), "PNG, -Y": ("x wrong", "y wrong")},
+}
 # Where the picture is mirrored, turned over or turned on purpose, or by the engine's own geometry.
 CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper right", "image, flipY": "lower left",
            "image, rotated by 90 degrees": "upper right"}
@@ -65,8 +71,9 @@ def cases_of(engine, gate=False):
     for name in GATE[engine] if gate else FILES:
         if file_of(name).split(".")[-1] not in TYPES.get(engine, ("png", "exr", "dds", "ktx2")):
             continue
-        for place, model in PLACES[engine][:2] if gate else PLACES[engine]:
+        for k, (place, model) in enumerate(PLACES[engine][:2] if gate else PLACES[engine]):
             cases.append({"table": "files", "name": name, "place": place, "map": file_of(name), "model": model,
+                          "wanted": GATE[engine][name][k] if gate else "",
                           "corner": CORNERS.get(place, "upper left"), "dent": False, "halves": False})
     if not gate and engine in DRAWS_MODELS:
         for kind in models.kinds():

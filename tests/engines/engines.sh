@@ -71,30 +71,32 @@ python3 "$tests/models.py" map.png models
 
 # Draws the cases.json of this folder with an engine.
 draw() {
-    local engine=$1 port
+    local engine=$1 port status=0
     echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script><script type="module" src="page.js"></script>' >page.html
     cp "$tests/$engine.js" "$tests/page.js" "$place"
     cp "$tests/start.js" .
     "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \
-        --loader:.wasm=file
+        --external:fs --external:path
     case $engine in
         three) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
         cesium) ln -sf "$place/node_modules/cesium/Build/Cesium" cesium ;;
-        filament) ln -sf "$place/node_modules/filament/filament.wasm" filament.wasm ;;
+        filament) ln -sf "$place/node_modules/filament" filament ;;
     esac
     port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
     (
         until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.1; done
         exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
             --enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update \
-            --disable-sync --disable-dev-shm-usage --force-color-profile=srgb --user-data-dir="$scratch/profile" \
+            --disable-sync --disable-dev-shm-usage --force-color-profile=srgb --user-data-dir="$PWD/profile" \
             "http://127.0.0.1:$port/page.html" 2>log
     ) &
     browser=$!
-    timeout "${ENGINES_PATIENCE:-900}" python3 "$tests/../browser/serve.py" "$port" || { tail -n 3 log; return 1; }
+    timeout "${ENGINES_PATIENCE:-900}" python3 "$tests/../browser/serve.py" "$port" || status=1
     kill "$browser" 2>/dev/null || true
     wait "$browser" 2>/dev/null || true
     browser=
+    [ "$status" -eq 0 ] || tail -n 3 log
+    return "$status"
 }
 
 failed=0
@@ -104,11 +106,17 @@ for engine in "$@"; do
     cd "$engine"
     python3 "$tests/cases.py" ${gate:+--gate} "$engine"
     echo "== ${packages[$engine]}"
-    draw "$engine" && python3 "$tests/judge.py" ${gate:+--gate} || failed=1
+    draw "$engine" && python3 "$tests/judge.py" || failed=1
     cd ..
 done
 if [ -n "$all" ] && [ "$failed" -eq 0 ]; then
-    python3 "$tests/tables.py" "$PWD" "$(chromium --version 2>/dev/null)" "${wanted[@]}" >"$tests/RESULTS.md"
+    pairs=()
+    for engine in "$@"; do
+        pairs+=("$engine=${packages[$engine]}")
+        name=${packages[$engine]%% *}
+        echo "$engine $(timeout 60 npm view "${name%@*}" version || echo unknown)" >>newest
+    done
+    python3 "$tests/tables.py" . "$(chromium --version 2>/dev/null)" newest "${pairs[@]}" >"$tests/RESULTS.md"
 fi
 [ -z "${KEEP:-}" ] || cp -r "$scratch" "$KEEP"
 exit "$failed"

@@ -5,13 +5,15 @@
 A bump lit from above is light in its upper half and dark in its lower one; a dent is the opposite. From the left, the
 same holds for the left and the right half. The judge looks for the bump in the four corners of its square, since a
 picture that lies upside down or is mirrored has it in another one, and measures halves around its centre. It adds
-"seen", "right", and the halves to each case, and writes verdicts.json.
+"seen", "right", and the halves to each case, and writes verdicts.json. It fails if another thing is seen than a case
+wants.
 """
 
 import json
 import math
 import pathlib
 import statistics
+import sys
 
 CENTRE = (0.266, 0.281)  # of the bump, from the corner that it is in, as a share of the square
 RADIUS = 0.18
@@ -80,6 +82,7 @@ def judge(case, pictures):
 
 
 def main():
+    failed = False
     job = json.loads(pathlib.Path("cases.json").read_text(encoding="utf-8"))
     for case in job["cases"]:
         text = pathlib.Path(f"{case['id']}.txt")
@@ -93,7 +96,11 @@ def main():
             case.update(seen="refused", right=False, halves_of=[])
         print(f"{case['table']:7}{case['name']:30}{case['place']:52}{'right' if case['right'] else 'WRONG':7}"
               f"{case['seen']:32}{case['halves_of']} {case['said'].splitlines()[0][:100] if case['said'] else ''}")
+        if case.get("wanted", "") not in ("", case["seen"]):
+            print(f"    wanted: {case['wanted']}")
+            failed = True
     pathlib.Path("verdicts.json").write_text(json.dumps(job, indent=1), encoding="utf-8")
+    sys.exit(failed)
 
 
 if __name__ == "__main__":

@@ -9,9 +9,9 @@ drive(side => new Promise(started => {
     render: {preserveDrawingBuffer: true, antialias: true, mipmapFilter: ""}, scale: {mode: Phaser.Scale.NONE},
     callbacks: {postBoot: () => game.loop.stop()},
     scene: {create() {
-      const scene = this, load = (key, url) => new Promise((done, fail) => {
+      const scene = this, load = (key, urls) => new Promise((done, fail) => {
         scene.load.once("complete", done).once("loaderror", fail);
-        scene.load.image(key, url);
+        scene.load.image(key, urls);
         scene.load.start();
       });
       scene.lights.enable().setAmbientColor(0);
@@ -24,13 +24,8 @@ drive(side => new Promise(started => {
 
       started(async ({map, place}) => {
         image?.destroy();
-        const key = `lit${++count}`, normals = await createImageBitmap(await (await fetch(map)).blob(),
-          {premultiplyAlpha: "none", colorSpaceConversion: "none"});
-        const copy = document.createElement("canvas").getContext("2d");
-        copy.canvas.width = normals.width;
-        copy.canvas.height = normals.height;
-        copy.drawImage(normals, 0, 0);
-        scene.textures.addImage(key, white.canvas, copy.canvas);
+        const key = `lit${++count}`;
+        await load(key, [white.canvas.toDataURL(), map]);
         image = scene.add.image(side / 2, side / 2, key).setDisplaySize(side, side).setLighting(true);
         image.setFlip(place.includes("flipX"), place.includes("flipY"));
         if (place.includes("rotated")) image.setAngle(90);

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# engines.sh: foreign programs draw a lit sphere with the files that --for makes for them. Run by hand.
+# spheres.sh: foreign programs draw a lit sphere with the files that --for makes for them. Run by hand.
 #
-#     tests/engines/engines.sh [BUILD]    default: build/release
+#     tests/engines/spheres.sh [BUILD]    default: build/release
 #
 # Each picture must agree with that of preview-normals for the same file: within 3 codes of 8 bits on 99 % of the
 # sphere's pixels. Blender and Godot draw their own files; three.js in Chromium draws those for three, gltf, bevy,
