@@ -45,7 +45,7 @@ PLACES = {
                 ("glTF, right-handed", PLAIN)],
     "playcanvas": [("own geometry", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
     "phaser": [("image", OWN), ("image, flipX", OWN), ("image, flipY", OWN), ("image, rotated by 90 degrees", OWN)],
-    "cesium": [], "filament": [], "model-viewer": [],
+    "cesium": [], "filament": [],
 }
 # What the gate draws, in the first two places of an engine, and what must be seen there.
 GATE = {
@@ -59,7 +59,7 @@ CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper r
 # The only file types that an engine is given, where it is not all. Babylon.js loads its decoder of KTX2, which npm does
 # not have, from a server of its own.
 TYPES = {"babylon": ("png", "exr", "dds"), "phaser": ("png",), "playcanvas": ("png", "dds", "ktx2")}
-DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament", "model-viewer")
+DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament")
 
 
 def file_of(name):

@@ -30,9 +30,8 @@ declare -A packages=(
     [phaser]=phaser@4.2.1
     [cesium]=cesium@1.145.0
     [filament]=filament@1.53.4
-    [model-viewer]="@google/model-viewer@4.4.0"
 )
-order=(three babylon playcanvas phaser cesium filament model-viewer)
+order=(three babylon playcanvas phaser cesium filament)
 all=
 [ $# -gt 0 ] || [ -n "$gate" ] || all=yes
 [ $# -gt 0 ] || set -- "${order[@]}"

@@ -58,6 +58,8 @@ def kinds():
     yield from both("half of the UVs mirrored", halves=True)
     yield from both("double-sided, from behind", node={"rotation": [0, 1, 0, 0]}, corner="upper right", dent=True,
                     double_sided=True)
+    yield from both("mirrored and double-sided, from behind", node={"rotation": [0, 1, 0, 0]}, dent=True, halves=True,
+                    double_sided=True)
     for turn in (10, 20, 30, 45, 60, 75, 90, 120):
         yield Kind(f"TANGENT turned by {turn} degrees", "map", turn=turn)
 
