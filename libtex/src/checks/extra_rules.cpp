@@ -83,7 +83,7 @@ void add_other_data(const CheckContext& context, Findings& findings) {
         "N219", "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
                     " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
     if (context.base.planes.size() > kAlpha && counts.high[kAlpha] > counts.low[kAlpha])
-        findings.soften(finding, Severity::note);
+        findings.rate(finding, Severity::note);
 }
 
 // Whether blue follows x and y, as z does.

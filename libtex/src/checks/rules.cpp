@@ -311,7 +311,9 @@ constexpr Rule kRules[] = {
      "Export the mesh again, with tangents that are made anew.", ""},
     {"N705", "tangents-not-mikktspace", mesh, note, true, "The tangents are not those of MikkTSpace.",
      "Maps from most bakers fit MikkTSpace's tangents. With others, the shading is wrong by the angle between both, "
-     "unless the map was baked with these. Blender makes them on quads, up to 11.6 degrees from those of the triangles "
+     "unless the map was baked with these. If the median is 60 degrees or more, which is an error, light seems to come "
+     "from another side in every engine: the tangents are those of another set of UVs, or of UVs before "
+     "KHR_texture_transform. Blender makes them on quads, up to 11.6 degrees from those of the triangles "
      "that it exports: then a map that Blender baked fits the tangents of the file.",
      "If the map was baked for MikkTSpace on triangles, convert it with convert-normals --tangents-in mikktspace "
      "--tangents file. In Blender, triangulate the mesh before you bake and export it.",
