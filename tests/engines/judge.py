@@ -64,6 +64,8 @@ def look_at(above, left):
     if across != 0 and 4 * abs(side - other) > abs(top - bottom):
         degrees = math.degrees(math.atan2(side - other, top - bottom))
         words = f"turned by {abs(degrees):.0f} degrees"
+    if words in ("bump", "dent") and not 0.8 < (top + bottom + 1) / (left_half + right_half + 1) < 1.25:
+        words += ", all of which leans"
     return words, corner, numbers
 
 

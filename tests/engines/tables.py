@@ -54,7 +54,7 @@ def models_table(found):
             case = next(case for case in found[engine]
                         if case["table"] == "models" and (case["name"], case["place"]) == (kind.name, kind.tangents))
             cells.append("right" if case["right"] else f"**{case['seen'].replace('|', 'and')}**")
-        wanted = kind.corner.replace(" ", " ") + (", a dent" if kind.dent else "")
+        wanted = kind.corner + (", a dent" if kind.dent else "")
         rows.append([kind.name, {"": "none", "map": "for these UVs"}.get(kind.tangents, f"for {kind.tangents}"),
                      "" if wanted == "upper left" else wanted, *cells])
     return table(["kind of glTF", "TANGENT", "where", *(NAMES[engine] for engine in engines)], rows)
@@ -68,10 +68,12 @@ def main():
              for engine in NAMES}
     print(f"""# What engines of the web draw
 
-Made by `tests/engines/engines.sh` on {datetime.date.today()}, in {chromium} with SwiftShader. A bump in the upper left
-corner of a map is lit from above and from the left. "right" is a bump in the right corner that is light in its upper half
-under the first light and in its left half under the second; numbers are the means of the top, bottom, left and right
-halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right, and a dent from both.
+Made by `tests/engines/engines.sh` on {datetime.date.today()}, in {chromium.split(" built")[0]} with SwiftShader.
+
+A bump in the upper left corner of a map is lit from above and from the left. "right" is a bump in the right corner that
+is light in its upper half under the first light and in its left half under the second; numbers are the means of the top,
+bottom, left and right halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right, and a dent
+from both.
 
 """ + table(["engine", "packages", "newest on npm that day"],
             [[NAMES[engine], packages[engine], now.get(engine, "not known")] for engine in NAMES]))

@@ -75,19 +75,20 @@ constexpr Engine kEngines[] = {
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
      kThreeTypes, kThreeEncodings, RoughnessUse::green},
-    // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
+    // Drawn by tests/engines, which shows where the picture lies upside down. isPackedRGFormat() in WebGLPrograms.js:
+    // RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
     // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
     {"three-packed", ktx2, bc5, YAxis::up, true, "",
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
-     "for desktop GPUs, --format eac-rg11 for others. The core of glTF does not allow such files in a model (issue "
-     "2602 of glTF).",
+     "for desktop GPUs, --format eac-rg11 for others. On geometry of three.js, repeat.y and normalScale.y are -1. The "
+     "core of glTF does not allow such files in a model (issue 2602 of glTF).",
      kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green},
     // Drawn by tests/engines: in the default, left-handed scene, both x and y of +Y maps come out the other way, and of
     // -Y maps x does.
     {"babylon", png, rgb8, YAxis::up, false, "",
      "Babylon.js reads x, y and z from R, G and B and builds the levels. Green points up; on its own geometry in a "
      "left-handed scene, which is the default, materials need invertNormalMapX and invertNormalMapY.",
-     kBabylonTypes, kRgbCodes, RoughnessUse::green},
+     kBabylonTypes, kRgbCodes},
     // Drawn by tests/engines.
     {"playcanvas", png, rgb8, YAxis::up, false, "",
      "PlayCanvas reads x, y and z of PNG from R, G and B, builds the levels and expects green up. With --format dxt5nm "
