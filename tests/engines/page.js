@@ -30,9 +30,9 @@ export async function drive(start) {
       complaints.length = 0;
       try {
         if (one.map && refused.has(one.map)) throw refused.get(one.map);
-        const draw = await Promise.race([prepare(one), patience(30000)]);
+        const draw = await Promise.race([prepare(one), patience(120000)]);
         for (const [name, light] of Object.entries(lights)) {
-          const canvas = await Promise.race([draw(light), patience(30000)]);
+          const canvas = await Promise.race([draw(light), patience(120000)]);
           await post(`${one.id}.${name}.grey`, texels(canvas, side));
         }
       } catch (error) {
