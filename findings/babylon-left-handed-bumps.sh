@@ -54,7 +54,11 @@ for (const [name, inverted] of [["default", false], ["inverted", true]]) {
 document.body.textContent = lines.join("|") + "|end";
 JS
 npx esbuild look.js --bundle --format=esm --outfile=page.js --log-level=error
-{ echo '<!DOCTYPE html><meta charset="utf-8"><body></body><script type="module">'; cat page.js; echo '</script>'; } >page.html
+{
+    echo '<!DOCTYPE html><meta charset="utf-8"><body></body><script type="module">'
+    cat page.js
+    echo '</script>'
+} >page.html
 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
     --user-data-dir="$work/profile" --virtual-time-budget=60000 --dump-dom "file://$work/page.html" 2>log |
     sed -n 's/.*<body>\(.*\)|end.*/\1/p' | tr '|' '\n' >seen

@@ -3,7 +3,7 @@
 # phaser-flipped-normals.sh: a lit image of Phaser 4.2.1 whose normal map leans to the right, as it is, turned by 180
 # degrees, and with flipX. Chromium of Debian 12 draws it, with SwiftShader.
 #
-# Expected: turned or flipped, it leans to the left, and light from the left makes it brighter than light from the right.
+# Expected: turned or flipped, it leans to the left: light from the left makes it brighter than light from the right.
 # Seen (2026-11-29): turned, it does. With flipX it still leans to the right: the picture of the map is mirrored, its
 # normals are not.
 # For a normal map: one sprite for both directions of a character is lit from the wrong side in one of them.
@@ -48,7 +48,11 @@ const game = new Phaser.Game({
   }}});
 JS
 npx esbuild look.js --bundle --format=esm --outfile=page.js --log-level=error
-{ echo '<!DOCTYPE html><meta charset="utf-8"><body></body><script type="module">'; cat page.js; echo '</script>'; } >page.html
+{
+    echo '<!DOCTYPE html><meta charset="utf-8"><body></body><script type="module">'
+    cat page.js
+    echo '</script>'
+} >page.html
 chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader \
     --user-data-dir="$work/profile" --virtual-time-budget=60000 --dump-dom "file://$work/page.html" 2>log |
     sed -n 's/.*<body>\(.*\)|end.*/\1/p' | tr '|' '\n' >seen

@@ -171,7 +171,8 @@ use_packages() (
 # The binary interface of libtex.so beside that of the last tag.
 abi() { counted abi tests/abi.sh; }
 
-# Other programs with our files: Blender, Godot, engines of the web, Khronos' validator. Each installs what it needs, if it can.
+# Other programs with our files: Blender, Godot, engines of the web, Khronos' validator. Each installs what it needs, if
+# it can.
 engines() {
     local status=0
     script blender tests/blender.sh || status=1

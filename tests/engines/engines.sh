@@ -71,7 +71,8 @@ python3 "$tests/models.py" map.png models
 # Draws the cases.json of this folder with an engine.
 draw() {
     local engine=$1 port status=0
-    echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script><script type="module" src="page.js"></script>' >page.html
+    echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script>' \
+        '<script type="module" src="page.js"></script>' >page.html
     cp "$tests/$engine.js" "$tests/page.js" "$place"
     cp "$tests/start.js" .
     "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \

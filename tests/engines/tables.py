@@ -70,20 +70,20 @@ def main():
 
 Made by `tests/engines/engines.sh` on {datetime.date.today()}, in {chromium.split(" built")[0]} with SwiftShader.
 
-A bump in the upper left corner of a map is lit from above and from the left. "right" is a bump in the right corner that
-is light in its upper half under the first light and in its left half under the second; numbers are the means of the top,
-bottom, left and right halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right, and a dent
-from both.
+A bump in the upper left corner of a map is lit from above and from the left. "right" is a bump in the right corner
+that is light in its upper half under the first light and in its left half under the second; numbers are the means of
+the top, bottom, left and right halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right,
+and a dent from both.
 
 """ + table(["engine", "packages", "newest on npm that day"],
             [[NAMES[engine], packages[engine], now.get(engine, "not known")] for engine in NAMES]))
-    print("## Files\n\nIn the default settings of each engine, except for those that a column names. Models are without\n"
-          "TANGENT if the column does not say so; the texture replaces the normal map of the model's material.\n")
+    print("## Files\n\nIn the default settings of each engine, except for those that a column names. Models have no "
+          "TANGENT\nif the column does not say so; the texture replaces the normal map of the model's material.\n")
     for engine in NAMES:
         if cases.PLACES[engine]:
             print(f"### {NAMES[engine]}\n\n" + files_table(engine, found[engine]))
-    print("## Models\n\nA square with a map of +Y in PNG. \"where\" is the corner in which the bump must be seen, if it "
-          "is another one.\n\n" + models_table(found))
+    print('## Models\n\nA square with a map of +Y in PNG. "where" is the corner in which the bump must be seen, if '
+          "it is another one.\n\n" + models_table(found))
 
 
 if __name__ == "__main__":
