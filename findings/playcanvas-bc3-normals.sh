@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# playcanvas-bc3-normals.sh: a StandardMaterial of PlayCanvas 2.23.3 with a normal map of BC3 (DXT5). Its R, G and B hold
-# a normal that leans to the left; its alpha, as x, and G hold one that leans to the right, as DXT5nm does. The texture
-# does not say which of the two it is. Chromium of Debian 12 draws it, with SwiftShader.
+# playcanvas-bc3-normals.sh: a StandardMaterial of PlayCanvas 2.23.3 with a normal map of BC3 (DXT5). Its R, G and B
+# hold a normal that leans to the left; its alpha, as x, and G hold one that leans to the right, as DXT5nm does. The
+# texture does not say which of the two it is. Chromium of Debian 12 draws it, with SwiftShader.
 #
 # Expected: R, G and B are read, as from RGBA8 with the same values, unless the texture's type says swizzleGGGR.
 # Seen (2026-11-29): x is read from alpha. RGBA8 leans to the left.
