@@ -171,11 +171,13 @@ use_packages() (
 # The binary interface of libtex.so beside that of the last tag.
 abi() { counted abi tests/abi.sh; }
 
-# Other programs with our files: Blender, Godot, three.js, Khronos' validator. Each installs what it needs, if it can.
+# Other programs with our files: Blender, Godot, engines of the web, Khronos' validator. Each installs what it needs, if
+# it can.
 engines() {
     local status=0
     script blender tests/blender.sh || status=1
     script blender_bake tests/blender_bake.sh || status=1
+    script spheres tests/engines/spheres.sh || status=1
     script engines tests/engines/engines.sh || status=1
     script three tests/browser/three.sh || status=1
     script ktx tests/ktx.sh || status=1

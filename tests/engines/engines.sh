@@ -1,56 +1,122 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# engines.sh: foreign programs draw a lit sphere with the files that --for makes for them. Run by hand.
+# engines.sh: engines of the web draw a bump with our files, and kinds of glTF, lit from above and from the left.
 #
-#     tests/engines/engines.sh [BUILD]    default: build/release
+#     tests/engines/engines.sh [--build BUILD] [--gate] [ENGINE...]    default: build/release, all engines
 #
-# Each picture must agree with that of preview-normals for the same file: within 3 codes of 8 bits on 99 % of the
-# sphere's pixels. Blender and Godot draw their own files; three.js in Chromium draws those for three, gltf, bevy,
-# android and ios, which its GPU API decodes. For unity, unreal and o3de nothing runs here. Needs blender, chromium,
-# godot3, npm and xvfb (apt-get install --no-install-recommends), and a BUILD with the Python module.
+# Prints what each shows, and what is right. After a run of all engines, tests/engines/RESULTS.md is written again.
+# --gate draws two files on three.js and Babylon.js and fails unless it sees what it must: PNG and, packed, BC5 on
+# three.js; PNG with and without the settings of the recipe on Babylon.js.
 #
-# Last result, 2026-11-24, three 0.187.0 in Chromium 156 with SwiftShader, Blender 3.4.1, Godot 3.2.3 with llvmpipe: all
-# agree on 99.3 to 99.7 % of the pixels.
+# Needs npm, chromium and python3; exits with 77 if one of them, or the registry of npm, is missing. Packages stay
+# in BUILD/engines. An engine is a page, <engine>.js, that esbuild bundles; cases.py says what it draws, judge.py what
+# is seen.
 set -euo pipefail
 tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-cd "$tests/../.."
-build=$(realpath "${1:-build/release}")
-export PATH=$build:$PATH PYTHONPATH=$build/python
-samples=$PWD/samples side=768 port=8618
+build=$tests/../../build/release gate=
+while :; do
+    case ${1:-} in
+        --build) build=$2; shift 2 ;;
+        --gate) gate=yes; shift ;;
+        *) break ;;
+    esac
+done
+build=$(realpath "$build")
+export PATH=$build:$PATH
+declare -A packages=(
+    [three]=three@0.187.0
+    [babylon]="@babylonjs/core@9.35.0 @babylonjs/loaders@9.28.0 babylonjs-gltf2interface@9.28.0"
+    [playcanvas]=playcanvas@2.23.3
+    [phaser]=phaser@4.2.1
+    [cesium]=cesium@1.145.0
+    [filament]=filament@1.53.4
+)
+order=(three babylon playcanvas phaser cesium filament)
+all=
+[ $# -gt 0 ] || [ -n "$gate" ] || all=yes
+[ $# -gt 0 ] || set -- "${order[@]}"
+[ -z "$gate" ] || set -- three babylon
+for program in npm chromium python3; do
+    command -v "$program" >/dev/null || { echo "$0: no $program here"; exit 77; }
+done
+
+# Installs a package if it is not there in this version.
+place=$build/engines
+mkdir -p "$place"
+wanted=(esbuild@0.28.2)
+for engine in "$@"; do
+    [ -n "${packages[$engine]:-}" ] || { echo "$0: no engine $engine; one of ${order[*]}"; exit 2; }
+    read -ra more <<<"${packages[$engine]}"
+    wanted+=("${more[@]}")
+done
+missing=()
+for package in "${wanted[@]}"; do
+    grep -qs "\"version\": \"${package##*@}\"" "$place/node_modules/${package%@*}/package.json" || missing+=("$package")
+done
+[ "${#missing[@]}" -eq 0 ] ||
+    timeout 300 npm install --silent --no-audit --no-fund --legacy-peer-deps --prefix "$place" "${missing[@]}" ||
+    { echo "$0: npm cannot install ${missing[*]}"; exit 77; }
+
 scratch=$(mktemp -d)
 browser=
-trap '[ -z "$browser" ] || kill "$browser" || true; wait; rm -rf "$scratch"' EXIT
+trap '[ -z "$browser" ] || kill "$browser" 2>/dev/null || true; wait; rm -rf "$scratch"' EXIT
 cd "$scratch"
+bake="--bumpiness $(python3 "$tests/bump.py") --wrap clamp --no-sync --quiet" all_levels="--mips all"
+python3 "$tests/cases.py" --commands | while read -r command; do
+    command=${command//\$bake/$bake}
+    eval "${command//\$all/$all_levels}"
+done
+python3 "$tests/models.py" map.png models
 
-python3 "$tests/sphere.py" .
-bake-normals "$samples/bricks.png" --out-dir . --for blender,godot,three,gltf,bevy,android,ios --bumpiness 2 --no-sync
-cp gltf/bricks.png normal.png # as sphere.glb names it
-
-blender -b --python-exit-code 1 -P "$tests/lit_blender.py" -- . blender/bricks.png "$PWD/blender.png" "$side" \
-    >log 2>&1 || { cat log; exit 1; }
-xvfb-run -a godot3 --video-driver GLES3 --resolution 64x64 -s "$tests/lit_godot.gd" \
-    "$PWD" "$PWD/godot/bricks.png" "$PWD/godot.png" "$side" >log 2>&1 || { cat log; exit 1; }
-
-npm install --silent --prefix modules three@0.187.0
-cp "$tests/lit_three.html" .
-cat >maps.json <<END
-{"side": $side, "maps": [["normal.png", "gltf.png"], ["three/bricks.png", "three.png"],
-                        ["bevy/bricks.ktx2", "bevy.png"], ["android/bricks.ktx2", "android.png"],
-                        ["ios/bricks.ktx2", "ios.png"]]}
-END
-(
-    until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.1; done
-    exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
-        --enable-unsafe-swiftshader --user-data-dir="$scratch/profile" "http://127.0.0.1:$port/lit_three.html" 2>log
-) &
-browser=$!
-timeout 120 python3 "$tests/../browser/serve.py" "$port" || { cat log; exit 1; }
+# Draws the cases.json of this folder with an engine.
+draw() {
+    local engine=$1 port status=0
+    echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script>' \
+        '<script type="module" src="page.js"></script>' >page.html
+    cp "$tests/$engine.js" "$tests/page.js" "$place"
+    cp "$tests/start.js" .
+    "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \
+        --external:fs --external:path
+    case $engine in
+        three) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
+        cesium) ln -sf "$place/node_modules/cesium/Build/Cesium" cesium ;;
+        filament) ln -sf "$place/node_modules/filament" filament ;;
+    esac
+    port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
+    (
+        until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.1; done
+        exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
+            --enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update \
+            --disable-sync --disable-dev-shm-usage --force-color-profile=srgb --user-data-dir="$PWD/profile" \
+            "http://127.0.0.1:$port/page.html" 2>log
+    ) &
+    browser=$!
+    timeout "${ENGINES_PATIENCE:-900}" python3 "$tests/../browser/serve.py" "$port" || status=1
+    kill "$browser" 2>/dev/null || true
+    wait "$browser" 2>/dev/null || true
+    browser=
+    [ "$status" -eq 0 ] || tail -n 3 log
+    return "$status"
+}
 
 failed=0
-for file in */bricks.*; do
-    engine=${file%%/*}
-    preview-normals "$file" -o ours.png --mesh sphere.glb --camera 0,0,0 --size "$side" --tint 0.6 --specular 0 \
-        --ambient 0 --no-legend --no-sync --quiet
-    python3 "$tests/compare.py" ours.png "$engine.png" || failed=1
+for engine in "$@"; do
+    mkdir "$engine"
+    ln -s "$PWD"/*.png "$PWD"/*.dds "$PWD"/*.ktx2 "$PWD"/*.exr "$PWD"/models "$engine"
+    cd "$engine"
+    python3 "$tests/cases.py" ${gate:+--gate} "$engine"
+    echo "== ${packages[$engine]}"
+    draw "$engine" && python3 "$tests/judge.py" || failed=1
+    cd ..
 done
+if [ -n "$all" ] && [ "$failed" -eq 0 ]; then
+    pairs=()
+    for engine in "$@"; do
+        pairs+=("$engine=${packages[$engine]}")
+        name=${packages[$engine]%% *}
+        echo "$engine $(timeout 60 npm view "${name%@*}" version || echo unknown)" >>newest
+    done
+    python3 "$tests/tables.py" . "$(chromium --version 2>/dev/null)" newest "${pairs[@]}" >"$tests/RESULTS.md"
+fi
+[ -z "${KEEP:-}" ] || cp -r "$scratch" "$KEEP"
 exit "$failed"

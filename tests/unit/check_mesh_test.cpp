@@ -4,6 +4,7 @@
 #include <tex/check.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <string_view>
@@ -143,6 +144,26 @@ TEST(CheckMesh, AFewOtherTangentsAreNoOtherMethod) {
     EXPECT_EQ(mesh_ids(selected), MeshIds{});
     for (std::size_t c = 0; c < 6; ++c) turn(c);
     EXPECT_EQ(mesh_ids(selected), MeshIds{"N705"});
+}
+
+// Engines light bumps from another side then (tests/engines/RESULTS.md).
+TEST(CheckMesh, TangentsThatPointAsideAreAnError) {
+    for (const double degrees : {50.0, 57.0, 63.0, 90.0, 180.0}) {
+        SelectedPart selected = stored_sheet();
+        const double radians = degrees * std::acos(-1.0) / 180.0;
+        const auto along = static_cast<float>(std::cos(radians)), across = static_cast<float>(std::sin(radians));
+        for (std::size_t c = 0; c < selected.tangents.size(); ++c) {
+            const Float3 n = selected.part.normals[selected.part.indices[c]];
+            const Float4 t = selected.tangents[c];
+            const Float3 b = {n.y * t.z - n.z * t.y, n.z * t.x - n.x * t.z, n.x * t.y - n.y * t.x};
+            selected.tangents[c] = {along * t.x + across * b.x, along * t.y + across * b.y, along * t.z + across * b.z,
+                                    t.w};
+        }
+        const auto findings = findings_of(selected);
+        ASSERT_EQ(findings.size(), 1u) << degrees;
+        EXPECT_EQ(findings[0].rule->id, "N705") << degrees;
+        EXPECT_EQ(findings[0].severity, degrees < 60.0 ? Severity::note : Severity::error) << degrees;
+    }
 }
 
 // A triangle that is a line in the map has neither a tangent nor a side that MikkTSpace could know.

@@ -32,6 +32,12 @@ constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
 constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc7};
+// Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal.
+constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga};
+// PlayCanvas takes x from A of every texture of BC3, and z from B of others; its loader of KTX2 is for Basis Universal.
+constexpr Container kPlayCanvasTypes[] = {png, jpeg, webp, dds};
+constexpr Encoding kPlayCanvasEncodings[] = {rgb8, rgba8, rgb16, rgba16, dxt5nm};
+constexpr Container kPhaserTypes[] = {png, jpeg, webp};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
 constexpr Encoding kBevyEncodings[] = {bc5,  eac_rg11, rg8,    rg16,    rgb8,    rgba8, rgb16,
                                        half, float_,   rgba16, rgba16f, rgba32f, bc7};
@@ -69,13 +75,30 @@ constexpr Engine kEngines[] = {
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
      kThreeTypes, kThreeEncodings, RoughnessUse::green},
-    // isPackedRGFormat() in WebGLPrograms.js: RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
+    // Drawn by tests/engines, which shows where the picture lies upside down. isPackedRGFormat() in WebGLPrograms.js:
+    // RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
     // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
     {"three-packed", ktx2, bc5, YAxis::up, true, "",
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
-     "for desktop GPUs, --format eac-rg11 for others. The core of glTF does not allow such files in a model (issue "
-     "2602 of glTF).",
+     "for desktop GPUs, --format eac-rg11 for others. On geometry of three.js, repeat.y and normalScale.y are -1. The "
+     "core of glTF does not allow such files in a model (issue 2602 of glTF).",
      kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green},
+    // Drawn by tests/engines: in the default, left-handed scene, both x and y of +Y maps come out the other way, and of
+    // -Y maps x does.
+    {"babylon", png, rgb8, YAxis::up, false, "",
+     "Babylon.js reads x, y and z from R, G and B and builds the levels. Green points up; on its own geometry in a "
+     "left-handed scene, which is the default, materials need invertNormalMapX and invertNormalMapY.",
+     kBabylonTypes, kRgbCodes},
+    // Drawn by tests/engines.
+    {"playcanvas", png, rgb8, YAxis::up, false, "",
+     "PlayCanvas reads x, y and z of PNG from R, G and B, builds the levels and expects green up. With --format dxt5nm "
+     "it reads DDS, too.",
+     kPlayCanvasTypes, kPlayCanvasEncodings},
+    // Drawn by tests/engines: the maps of 2D lights.
+    {"phaser", png, rgb8, YAxis::up, false, "",
+     "The lights of Phaser read x, y and z from R, G and B and expect green up. They turn the normals with a rotated "
+     "sprite, but not with flipX and flipY.",
+     kPhaserTypes, kRgbCodes},
     // Blender's manual, Normal Map node: OpenGL convention by default, Non-Color images.
     {"blender", png, rgb16, YAxis::up, false, "",
      "Blender renders from the texels of the file, so 16 bits avoid steps in reflections. It expects green up.",

@@ -85,7 +85,7 @@ void add_other_data(const CheckContext& context, Findings& findings) {
         "N219", "blue does not follow x and y as z does: " + decimal(static_cast<double>(counts.low[kBlue]), 2) +
                     " to " + decimal(static_cast<double>(counts.high[kBlue]), 2));
     if (context.base.planes.size() <= kAlpha || counts.high[kAlpha] <= counts.low[kAlpha]) return;
-    findings.soften(finding, Severity::note);
+    findings.rate(finding, Severity::note);
     if (std::abs(context.curl.correlation) < kLeastCorrelation)  // x and y themselves may be elsewhere
         finding.message += fitting_layout_text(context.stored);
 }

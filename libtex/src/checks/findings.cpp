@@ -37,7 +37,7 @@ Finding& Findings::add(std::string_view id, std::string message) {
     return finding;
 }
 
-void Findings::soften(Finding& finding, Severity severity) const {
+void Findings::rate(Finding& finding, Severity severity) const {
     const auto names_it = [&](const auto& row) {
         return row.first == finding.rule->id || row.first == finding.rule->name;
     };

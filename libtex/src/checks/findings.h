@@ -47,8 +47,8 @@ public:
     [[nodiscard]] bool wants(std::string_view id) const;
     // Adds a finding of rule `id`. If that rule is not wanted, the result is a dummy that is not read.
     Finding& add(std::string_view id, std::string message);
-    // Gives a finding a lower severity, unless the options name one for its rule.
-    void soften(Finding& finding, Severity severity) const;
+    // Gives a finding another severity than its rule's, unless the options name one for its rule.
+    void rate(Finding& finding, Severity severity) const;
     // The finding of this rule, or null.
     Finding* find(std::string_view id);
     // Returns the findings in order, without those that other findings explain; `explained` counts the omitted ones.

@@ -296,7 +296,8 @@ constexpr Rule kRules[] = {
 
     // -- the mesh ---------------------------------------------------------------------------------------------
     {"N701", "tangents-missing", mesh, note, true, "The mesh has a normal map, but no tangents.",
-     "Each engine then makes its own tangents, and not all by the same method. glTF asks for MikkTSpace's.",
+     "Each engine then makes its own tangents, and not all by MikkTSpace's method, as glTF asks. Cesium and filament "
+     "light mirrored UVs, transforms or texCoord 1 from the wrong side then: normal-maps-engines(7) has a table.",
      "Export the mesh with tangents, or make sure that the engine makes those that the map was baked with.", ""},
     {"N702", "tangents-not-unit", mesh, warning, true, "Tangents are not of unit length.",
      "A tangent of length zero has no direction, so its triangles are lit wrongly. Other lengths make bumps steeper or "
@@ -312,8 +313,9 @@ constexpr Rule kRules[] = {
      "Export the mesh again, with tangents that are made anew.", ""},
     {"N705", "tangents-not-mikktspace", mesh, note, true, "The tangents are not those of MikkTSpace.",
      "Maps from most bakers fit MikkTSpace's tangents. With others, the shading is wrong by the angle between both, "
-     "unless the map was baked with these. Blender makes them on quads, up to 11.6 degrees from those of the triangles "
-     "that it exports: then a map that Blender baked fits the tangents of the file.",
+     "unless the map was baked with these. A median of 60 degrees or more is an error: light seems to come from "
+     "elsewhere in every engine. Blender makes them on quads, up to 11.6 degrees from those of the triangles that it "
+     "exports: then a map that Blender baked fits the tangents of the file.",
      "If the map was baked for MikkTSpace on triangles, convert it with convert-normals --tangents-in mikktspace "
      "--tangents file. In Blender, triangulate the mesh before you bake and export it.",
      ""},
@@ -373,8 +375,8 @@ constexpr Rule kRules[] = {
      "Set normalTexture.scale to a value above 0, and turn the heights of the map over if they are meant to be dents.",
      ""},
     {"N805", "mirrored-and-double-sided", model, note, true, "A double-sided material has mirrored tangents.",
-     "On back faces, glTF turns the normal over. Readers differ in whether tangent and bitangent turn with it; those "
-     "that derive the bitangent from the turned normal and w show bumps as dents there.",
+     "On back faces, glTF turns the normal over. Readers differ in whether the tangent turns with it: a bump is a dent "
+     "from behind in three.js, Babylon.js, Cesium and filament, and a bump in PlayCanvas, whatever w is.",
      "Make the material single-sided, or look at both sides in each engine that is to show the model.", "N722"},
     {"N806", "data-in-normal-slot", model, error, true, "The image is used as other data, too.",
      "An image of occlusion, roughness or metalness holds no normals. Such images stand in the normal slot if slots "

@@ -72,10 +72,11 @@ std::string of_all(std::size_t count, std::size_t all, const char* what) {
     return std::to_string(count) + " of " + std::to_string(all) + " " + what;
 }
 
-void add(Findings& findings, std::string_view id, std::string message, double figure, std::string_view unit) {
+Finding& add(Findings& findings, std::string_view id, std::string message, double figure, std::string_view unit) {
     Finding& finding = findings.add(id, std::move(message));
     finding.figure = figure;
     finding.unit = unit;
+    return finding;
 }
 
 // A material that mirrors or turns its map moves it away from the tangents, which stay.
@@ -143,7 +144,8 @@ Result<void> compare_with_methods(const SelectedPart& selected, const Execution&
     };
     std::string message = "they differ by " + text(*mikktspace);
     if (meshopt->p99 < 0.5 * mikktspace->p99) message += "; meshoptimizer's fit better: " + text(*meshopt);
-    add(findings, "N705", message + of_moved_uvs(selected), mikktspace->p99, "degrees");
+    Finding& finding = add(findings, "N705", message + of_moved_uvs(selected), mikktspace->p99, "degrees");
+    if (mikktspace->median >= thresholds::kTangentsAside) findings.rate(finding, Severity::error);
     return {};
 }
 

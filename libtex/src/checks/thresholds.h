@@ -85,6 +85,9 @@ inline constexpr double kOppositeSigns = 0.05;  // share of triangles: at most 0
 // p99 in degrees. Suzanne: 3.6, perhaps because Blender's MikkTSpace runs on quads. FlightHelmet, which is known not to
 // be exact: 4.6 to 15.
 inline constexpr double kTangentAngle = 5.0;
+// Median in degrees. Engines light a bump as if the light had been turned by that angle (tests/engines/RESULTS.md): at
+// 60 degrees, half of the difference between its two sides is left; at 90, none; above, bumps are dents.
+inline constexpr double kTangentsAside = 60.0;
 // Slopes of compare_gaps() (mesh_seams.h), for maps made from a field on the real meshes, at 1024 and 2048 texels, 8
 // bits. Green flipped: at least 0.998; green right: at most 0.002. The maps that came with the models: 0.24 to 0.69, so
 // that nothing is said about them. Perhaps their bevels are too narrow for their texels.

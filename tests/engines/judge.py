@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""judge.py: says what is seen in the pictures of cases.json, in the current folder; see page.js.
+
+A bump lit from above is light in its upper half and dark in its lower one; a dent is the opposite. From the left, the
+same holds for the left and the right half. The judge looks for the bump in the four corners of its square, since a
+picture that lies upside down or is mirrored has it in another one, and measures halves around its centre. It adds
+"seen", "right", and the halves to each case, and writes verdicts.json. It fails if another thing is seen than a case
+wants.
+"""
+
+import json
+import math
+import pathlib
+import statistics
+import sys
+
+CENTRE = (0.266, 0.281)  # of the bump, from the corner that it is in, as a share of the square
+RADIUS = 0.18
+LEAST = 12  # codes of 255 between halves that count as a difference
+CORNERS = {"upper left": (0, 0), "upper right": (1, 0), "lower left": (0, 1), "lower right": (1, 1)}
+
+
+def halves(rows, corner):
+    """The means of the bump's top, bottom, left and right halves."""
+    height, width = len(rows), len(rows[0])
+    at_x, at_y = (abs(far - share) for far, share in zip(CORNERS[corner], CENTRE))
+    found = {"top": [], "bottom": [], "left": [], "right": []}
+    for j, row in enumerate(rows):
+        y = (j + 0.5) / height - at_y
+        for i, code in enumerate(row):
+            x = (i + 0.5) / width - at_x
+            if math.hypot(x, y) < RADIUS:
+                found["top" if y < 0 else "bottom"].append(code)
+                found["left" if x < 0 else "right"].append(code)
+    return [statistics.fmean(codes) for codes in found.values()]
+
+
+def unevenness(rows, corner):
+    """How far a quarter of the square is from the codes of the plane around the bump."""
+    (far_x, far_y), height, width = CORNERS[corner], len(rows) // 2, len(rows[0]) // 2
+    plane = statistics.median(code for row in rows for code in row)
+    return sum(abs(code - plane) for row in rows[far_y * height:(far_y + 1) * height]
+               for code in row[far_x * width:(far_x + 1) * width])
+
+
+def look_at(above, left):
+    """What is seen in one square: words, the corner, and the four halves under the light that tells them apart."""
+    apart = {corner: unevenness(above, corner) + unevenness(left, corner) for corner in CORNERS}
+    corner = max(apart, key=apart.get)
+    top, bottom, side, other = halves(above, corner)
+    _, _, left_half, right_half = halves(left, corner)
+    numbers = [round(n) for n in (top, bottom, left_half, right_half)]
+    if max(max(row) for row in above + left) < LEAST:
+        return "black", corner, numbers
+    if statistics.median(code for row in above for code in row) < LEAST:
+        return "dark where the map is flat", corner, numbers
+
+    def sign(difference):
+        return (difference > LEAST) - (difference < -LEAST)
+    y, x, across = sign(top - bottom), sign(left_half - right_half), sign(side - other)
+    words = {(1, 1): "bump", (-1, -1): "dent", (1, -1): "x wrong", (-1, 1): "y wrong", (0, 0): "flat",
+             (1, 0): "x flat", (0, 1): "y flat", (-1, 0): "y wrong, x flat", (0, -1): "x wrong, y flat"}[y, x]
+    if across != 0 and 4 * abs(side - other) > abs(top - bottom):
+        degrees = math.degrees(math.atan2(side - other, top - bottom))
+        words = f"turned by {abs(degrees):.0f} degrees"
+    if words in ("bump", "dent") and not 0.8 < (top + bottom + 1) / (left_half + right_half + 1) < 1.25:
+        words += ", all of which leans"
+    return words, corner, numbers
+
+
+def judge(case, pictures):
+    width = len(pictures["above"][0])
+    squares = [(0, width, case["corner"])]
+    if case["halves"]:  # the second is mirrored
+        squares = [(0, width // 2, "upper left"), (width // 2, width, "upper right")]
+    seen, numbers, right = [], [], True
+    for first, end, corner in squares:
+        words, found, four = look_at(*([row[first:end] for row in pictures[light]] for light in ("above", "left")))
+        right = right and words == ("dent" if case["dent"] else "bump") and found == corner
+        seen.append(words if found == corner or words in ("black", "flat") else f"{words} in the {found} corner")
+        numbers.append(four)
+    case.update(seen=seen[0] if len(set(seen)) == 1 else " | ".join(seen), right=right, halves_of=numbers)
+
+
+def main():
+    failed = False
+    job = json.loads(pathlib.Path("cases.json").read_text(encoding="utf-8"))
+    for case in job["cases"]:
+        text = pathlib.Path(f"{case['id']}.txt")
+        case["said"] = text.read_text(encoding="utf-8") if text.exists() else ""
+        files = {light: pathlib.Path(f"{case['id']}.{light}.grey") for light in job["lights"]}
+        if all(file.exists() for file in files.values()):
+            pictures = {light: file.read_bytes() for light, file in files.items()}
+            judge(case, {light: [codes[at:at + job["side"]] for at in range(0, len(codes), job["side"])]
+                         for light, codes in pictures.items()})
+        else:
+            case.update(seen="refused", right=False, halves_of=[])
+        print(f"{case['table']:7}{case['name']:30}{case['place']:52}{'right' if case['right'] else 'WRONG':7}"
+              f"{case['seen']:32}{case['halves_of']} {case['said'].splitlines()[0][:100] if case['said'] else ''}")
+        if case.get("wanted", "") not in ("", case["seen"]):
+            print(f"    wanted: {case['wanted']}")
+            failed = True
+    pathlib.Path("verdicts.json").write_text(json.dumps(job, indent=1), encoding="utf-8")
+    sys.exit(failed)
+
+
+if __name__ == "__main__":
+    main()

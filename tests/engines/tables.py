@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""tables.py FOLDER CHROMIUM NEWEST ENGINE=PACKAGE...: prints RESULTS.md from FOLDER/<engine>/verdicts.json.
+
+NEWEST is a file with the newest release of each engine's package on npm: a line "engine version".
+"""
+
+import datetime
+import json
+import pathlib
+import sys
+
+import cases
+import models
+
+NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "phaser": "Phaser",
+         "cesium": "Cesium", "filament": "filament"}
+
+
+def row(cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+def table(head, rows):
+    return "\n".join([row(head), "|" + "---|" * len(head), *map(row, rows)]) + "\n"
+
+
+def cell(case):
+    """What is seen, in a table: "right", or what is wrong, with the halves."""
+    if not case["halves_of"]:
+        said = case["said"].splitlines()[0] if case["said"] else ""
+        return f"refused: {said[:60]}" if said else "refused"
+    numbers = "; ".join(" ".join(map(str, four)) for four in case["halves_of"])
+    seen = case["seen"].replace("|", "and")
+    return (f"right ({numbers})" if case["right"] else f"**{seen}** ({numbers})")
+
+
+def files_table(engine, found):
+    places = [place for place, _ in cases.PLACES[engine]]
+    rows = []
+    for name in cases.FILES:
+        cells = {case["place"]: cell(case) for case in found if case["table"] == "files" and case["name"] == name}
+        if cells:
+            rows.append([name, *(cells[place] for place in places)])
+    return table(["file", *places], rows)
+
+
+def models_table(found):
+    engines = [engine for engine in NAMES if any(case["table"] == "models" for case in found[engine])]
+    rows = []
+    for kind in models.kinds():
+        cells = []
+        for engine in engines:
+            case = next(case for case in found[engine]
+                        if case["table"] == "models" and (case["name"], case["place"]) == (kind.name, kind.tangents))
+            cells.append("right" if case["right"] else f"**{case['seen'].replace('|', 'and')}**")
+        wanted = kind.corner + (", a dent" if kind.dent else "")
+        rows.append([kind.name, {"": "none", "map": "for these UVs"}.get(kind.tangents, f"for {kind.tangents}"),
+                     "" if wanted == "upper left" else wanted, *cells])
+    return table(["kind of glTF", "TANGENT", "where", *(NAMES[engine] for engine in engines)], rows)
+
+
+def main():
+    folder, chromium, newest = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
+    packages = dict(argument.split("=", 1) for argument in sys.argv[4:])
+    now = dict(line.split() for line in pathlib.Path(newest).read_text(encoding="utf-8").splitlines())
+    found = {engine: json.loads((folder / engine / "verdicts.json").read_text(encoding="utf-8"))["cases"]
+             for engine in NAMES}
+    print(f"""# What engines of the web draw
+
+Made by `tests/engines/engines.sh` on {datetime.date.today()}, in {chromium.split(" built")[0]} with SwiftShader.
+
+A bump in the upper left corner of a map is lit from above and from the left. "right" is a bump in the right corner
+that is light in its upper half under the first light and in its left half under the second; numbers are the means of
+the top, bottom, left and right halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right,
+and a dent from both.
+
+""" + table(["engine", "packages", "newest on npm that day"],
+            [[NAMES[engine], packages[engine], now.get(engine, "not known")] for engine in NAMES]))
+    print("## Files\n\nIn the default settings of each engine, except for those that a column names. Models have no "
+          "TANGENT\nif the column does not say so; the texture replaces the normal map of the model's material.\n")
+    for engine in NAMES:
+        if cases.PLACES[engine]:
+            print(f"### {NAMES[engine]}\n\n" + files_table(engine, found[engine]))
+    print('## Models\n\nA square with a map of +Y in PNG. "where" is the corner in which the bump must be seen, if '
+          "it is another one.\n\n" + models_table(found))
+
+
+if __name__ == "__main__":
+    main()
