@@ -144,10 +144,10 @@ TEST_F(Engines, NamesSeparateTheFilesOfSeveralEngines) {
 }
 
 TEST_F(Engines, MistakesSayWhatIsWrong) {
-    fails(
-        "bake-normals rock.png -o x.png --for unitty",
-        "--for: must be one of unity, unreal, godot, gltf, gltf-ktx2, three, three-packed, blender, bevy, o3de, android, "
-        "ios, not 'unitty'; did you mean unity?");
+    fails("bake-normals rock.png -o x.png --for unitty",
+          "--for: must be one of unity, unreal, godot, gltf, gltf-ktx2, three, three-packed, blender, bevy, o3de, "
+          "android, "
+          "ios, not 'unitty'; did you mean unity?");
     fails("bake-normals rock.png -o x.png --for unity,unity", "unity is named twice");
     fails("bake-normals rock.png -o x.png --for unity,list", "not 'list'");
     fails("bake-normals rock.png -o x.png --for unity,unreal", "-o takes one engine of --for, 2 are given");
