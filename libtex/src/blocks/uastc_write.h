@@ -19,7 +19,7 @@ struct UastcHints {
     bool flip = false, diff = false;
     std::uint8_t table[2] = {};
     std::uint8_t bias = kEtc1Unmoved;
-    // Of blocks of one colour: the modifier, and the base colour.
+    // The modifier and the base colour, of blocks of one colour.
     std::uint8_t selector = 0, base[3] = {};
 };
 

@@ -240,7 +240,7 @@ void UastcBatch::gather_hints(const UastcContent& content, int lane) {
     for (int e = 0; e < 2; ++e) {
         for (int c = 0; c < 3; ++c) hints_.end[e][c][lane] = uastc_code(mode.color_range, content.ends[0][e][c]);
     }
-    // Of 32 weights, 6 are at either end, and of four each is a step.
+    // So many weights at either end are the first and the last step: 6 of 32, 1 of 4.
     constexpr int kFirst[6] = {0, 0, 1, 2, 3, 6};
     const int levels = 1 << mode.weight_bits, first = kFirst[mode.weight_bits];
     for (int k = 0; k < kUastcTexels; ++k) {

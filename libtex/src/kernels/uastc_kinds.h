@@ -16,7 +16,7 @@ enum UastcKindNumber {
     kUastcKinds = 8,
 };
 
-// As kinds of BC7; instead of bits they name ranges of endpoints, of kAstcRangeTable.
+// Kinds as those of BC7; instead of bits they name ranges of endpoints, of kAstcRangeTable.
 inline constexpr Bc7Kind kUastcKindTable[kUastcKinds] = {
     {6, 1, 18, 4, Bc7Lowest::none, false, false, 18, 4}, {0, 1, 19, 16, Bc7Lowest::none, false, false, 0, 0},
     {5, 1, 20, 8, Bc7Lowest::none, false, false, 0, 0},  {18, 1, 11, 32, Bc7Lowest::none, false, false, 0, 0},

@@ -3,7 +3,7 @@
 #include "kernels/uastc_hints.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/uastc_bc1.cpp"
+#define HWY_TARGET_INCLUDE "kernels/uastc_hints_bc1.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

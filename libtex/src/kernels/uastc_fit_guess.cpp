@@ -8,7 +8,7 @@
 #include "kernels/uastc_kinds.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/uastc_guess.cpp"
+#define HWY_TARGET_INCLUDE "kernels/uastc_fit_guess.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
