@@ -67,8 +67,10 @@ Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {
     const auto has_model = [](const cli::Task& task) { return task.model || task.model_output; };
     if (!material_.empty() && std::none_of(tasks.begin(), tasks.end(), has_model))
         throw cli::UsageError("--material needs a model");
-    const auto is_model = [](const cli::Task& task) { return task.model_output != nullptr; };
-    if (mips_.levels.value_or(1) != 1 && !mips_.keep && std::any_of(tasks.begin(), tasks.end(), is_model))
+    const auto has_picture = [](const cli::Task& task) {
+        return task.model_output != nullptr && task.container != Container::ktx2;
+    };
+    if (mips_.levels.value_or(1) != 1 && !mips_.keep && std::any_of(tasks.begin(), tasks.end(), has_picture))
         throw cli::UsageError("--mips", "models hold no levels: engines build them");
     mips_.check(tasks);
     mips_.check_builds(command, tasks);

@@ -15,7 +15,9 @@ ExtraSet can_hold(Encoding encoding) {
     const FormatInfo info = format_info(format);
     const bool has_z = swizzle[2] == Component::z;
     const bool has_texels = !info.has_blocks();
-    return {has_z && has_texels, info.channels == 4 && swizzle[3] == Component::one, has_z && has_texels};
+    const WholeBlocks* const whole = format_row(format).codec->whole;
+    const bool has_alpha = info.channels == 4 && (whole == nullptr || whole->values == 4);
+    return {has_z && has_texels, has_alpha && swizzle[3] == Component::one, has_z && has_texels};
 }
 
 bool can_optimise(Encoding encoding) {

@@ -32,6 +32,7 @@ constexpr WantedFile kWanted[] = {
     {"phaser", "rock.png", "rgb8", "up", 1},        {"blender", "rock.png", "rgb16", "up", 1},
     {"bevy", "rock.ktx2", "bc5", "up", 10},         {"o3de", "rock_normal.png", "rgb8", "down", 1},
     {"android", "rock.ktx2", "eac-rg11", "up", 10}, {"ios", "rock.ktx2", "eac-rg11", "up", 10},
+    {"gltf-ktx2", "rock.ktx2", "uastc", "up", 10},
 };
 
 std::string all_engines() {
@@ -146,9 +147,8 @@ TEST_F(Engines, NamesSeparateTheFilesOfSeveralEngines) {
 
 TEST_F(Engines, MistakesSayWhatIsWrong) {
     fails("bake-normals rock.png -o x.png --for unitty",
-          "--for: must be one of unity, unreal, godot, gltf, three, three-packed, babylon, playcanvas, phaser, "
-          "blender, bevy, o3de, android, ios, not "
-          "'unitty'; did you mean unity?");
+          "--for: must be one of unity, unreal, godot, gltf, gltf-ktx2, three, three-packed, babylon, playcanvas, "
+          "phaser, blender, bevy, o3de, android, ios, not 'unitty'; did you mean unity?");
     fails("bake-normals rock.png -o x.png --for unity,unity", "unity is named twice");
     fails("bake-normals rock.png -o x.png --for unity,list", "not 'list'");
     fails("bake-normals rock.png -o x.png --for unity,unreal", "-o takes one engine of --for, 2 are given");

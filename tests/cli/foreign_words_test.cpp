@@ -161,8 +161,8 @@ TEST(ForeignWords, AreAnswered) {
     };
     says({"a.png", "-o", "a.dds", "--format", "dxt5"}, "not 'dxt5'; here it is dxt5nm\n");
     says({"a.png", "-o", "a.dds", "--format", "BC5_UNORM"}, "; here it is bc5\n");
-    says({"a.png", "-o", "a.ktx2", "--format", "uastc"},
-         "; uastc is not written: make n.png, then run basisu -ktx2 -uastc -normal_map n.png\n");
+    says({"a.png", "-o", "a.ktx2", "--format", "etc1s"},
+         "; etc1s is not written: make n.png, then run basisu -ktx2 -normal_map n.png\n");
     says({"a.png", "-o", "a.png", "--for", "ue5"}, "; here it is unreal\n");
     says({"a.png", "-o", "a.dds", "--quality", "90"}, "of blocks, it is --effort");
     for (const char* same : {"bc3n", "bc3nm", "3DC", "ATI2"})

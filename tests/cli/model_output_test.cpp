@@ -180,9 +180,9 @@ TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals none.glb -o x.glb", 3, "none.glb: no such file");
     refuses("pack-normals N802*.glb N804*.glb -o x.glb", 2, "-o takes one input, 2 are given");
     refuses("pack-normals N804*.glb -o x.glb --format bc5", 2,
-            "models hold normals as rgb8, rgba8, rgb16, rgba16, not");
+            "models hold normals as rgb8, rgba8, rgb16, rgba16, uastc, not");
     refuses("pack-normals N804*.glb -o x.glb --container dds", 2,
-            "the pictures of a model are PNG, JPEG or WebP, not dds");
+            "the pictures of a model are PNG, JPEG, WebP or KTX2, not dds");
     refuses("pack-normals N804*.glb -o x.glb --container jpeg --format rgb16", 2, "jpeg files cannot hold rgb16");
     refuses("pack-normals N804*.glb -o x.glb --mips all", 2, "--mips: models hold no levels: engines build them");
     refuses("pack-normals N804*.glb -o x.glb --alpha 0.5", 2, "--alpha is for one map, and not for models");

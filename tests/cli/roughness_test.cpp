@@ -147,6 +147,7 @@ TEST_F(RoughnessOut, GoesWhereTheEngineReadsIt) {
         {"", "r.png", Format::r8_unorm, 0.25, -1, -1, -1},
         {"gltf", "r.png", Format::rgb8_unorm, 1, 0.25, 1, -1},
         {"gltf", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
+        {"gltf-ktx2", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
         {"three", "r.exr", Format::rgb16_float, 1, 0.25, 1, -1},
         {"three-packed", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
         {"godot", "r.tif", Format::rgb16_unorm, 1, 0.25, 1, -1},

@@ -66,9 +66,9 @@ TEST_F(Supercompress, OtherFilesAndLevelsAreErrors) {
     const std::pair<const char*, const char*> cases[] = {
         {"-o b.dds --supercompress zstd", "bake-normals: error: b.dds: --supercompress needs a KTX2 file\n"},
         {"-o b.ktx2 --supercompress zstd:0",
-         "bake-normals: error: --supercompress: 'zstd:0' is neither zstd nor zstd:N with N from 1 to 22\n"},
+         "bake-normals: error: --supercompress: 'zstd:0' is not zstd, zstd:N with N from 1 to 22, or none\n"},
         {"-o b.ktx2 --supercompress lz4",
-         "bake-normals: error: --supercompress: 'lz4' is neither zstd nor zstd:N with N from 1 to 22\n"}};
+         "bake-normals: error: --supercompress: 'lz4' is not zstd, zstd:N with N from 1 to 22, or none\n"}};
     for (const auto& [arguments, message] : cases) {
         const Ran ran = shell(scratch_, std::string("bake-normals a.png ") + arguments);
         EXPECT_EQ(ran.code, 2);

@@ -55,7 +55,7 @@ TEST(Ktx2, ReadsBackEveryFormatThatItWrites) {
         ASSERT_TRUE(read) << row.name << ": " << read.error().message();
         ASSERT_EQ(read->levels.size(), 4u);
         EXPECT_THAT(read->remarks, testing::IsEmpty());
-        EXPECT_FALSE(read->swizzle_known);
+        EXPECT_EQ(read->swizzle_known, row.value == Format::uastc_4x4_unorm) << "its descriptor says RGB";
         for (std::size_t k = 0; k < 4; ++k) {
             EXPECT_EQ(read->levels[k].extent, texture.levels[k].extent);
             if (read->format == texture.format) {

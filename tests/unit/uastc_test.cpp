@@ -88,8 +88,8 @@ TEST(Uastc, ABlockOfOneColourHasItExactly) {
     for (int c = 0; c < 4; ++c) EXPECT_EQ(std::count(channels[c], channels[c] + 16, kColor[c]), 16);
 }
 
-TEST(Uastc, IsReadAndNotWritten) {
-    for (const Format format : {Format::uastc_4x4_unorm, Format::etc1s_rgb_unorm, Format::etc1s_rgba_unorm}) {
+TEST(Uastc, Etc1sIsReadAndNotWritten) {
+    for (const Format format : {Format::etc1s_rgb_unorm, Format::etc1s_rgba_unorm}) {
         Texture texture;
         texture.format = format;
         texture.levels.push_back({{4, 4}, std::vector<std::byte>(format_info(format).block_bytes)});

@@ -26,11 +26,14 @@ OutputOptions picture_options(const FileOptions& files, const OutputOptions& out
     OutputOptions own = output.of(output.engines_or_none().front());
     const std::string& name = files.output.empty() ? files.name : files.output;
     const auto refuse = [&](std::string_view what) { throw UsageError(fmt::format("{}: {}", printable(name), what)); };
-    const Container container = own.made_container().value_or(Container::png);
-    if (container != Container::png && container != Container::jpeg && container != Container::webp) {
-        refuse(
-            fmt::format("the pictures of a model are PNG, JPEG or WebP, not {}", name_of(kContainerNames, container)));
+    const bool is_basis = own.format == Encoding::uastc;
+    const Container container = own.made_container().value_or(is_basis ? Container::ktx2 : Container::png);
+    if (container != Container::png && container != Container::jpeg && container != Container::webp &&
+        container != Container::ktx2) {
+        refuse(fmt::format("the pictures of a model are PNG, JPEG, WebP or KTX2, not {}",
+                           name_of(kContainerNames, container)));
     }
+    if (container == Container::ktx2 && !is_basis) refuse("the KTX2 pictures of a model are of --format uastc");
     own.container = container;
     std::ignore = own.container_for("picture" + extension_of(container), container);
     if (own.format && !is_for_models(*own.format)) {

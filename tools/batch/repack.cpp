@@ -92,11 +92,15 @@ Result<void> PackCommand::pack_image(Job& job, const std::vector<std::shared_ptr
     PackFileOptions with = all_options(job);
     const auto bytes = std::make_shared<std::vector<std::byte>>();
     with.write.into = bytes;
+    // Viewers build no levels of compressed textures.
+    if (job.task.container == Container::ktx2 && !with.mip) with.mip.emplace();
     if (auto opened = first.open(with.source.read); !opened) return opened;
     const auto packed = pack_file(first.path, first.name(), job.task.container, with, execution);
     if (!packed) return packed.error();
     normals.note(job, first.path, packed->source);
     note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding}, first.path);
+    if (job.task.container == Container::ktx2 && (packed->extent.width % 4 != 0 || packed->extent.height % 4 != 0))
+        repeated_.add(job, first.path, "KHR_texture_basisu requires sides that are multiples of 4: see --max-size");
     picture.bytes = std::move(*bytes);
     for (const auto& map : maps) {
         Json line;

@@ -125,7 +125,6 @@ constexpr ForeignWord kForeignWords[] = {
 
 constexpr UnwrittenType kUnwrittenTypes[] = {
     {"avif", "avifenc --lossless n.png n.avif"},
-    {"uastc", "basisu -ktx2 -uastc -normal_map n.png"},
     {"etc1s basis", "basisu -ktx2 -normal_map n.png"},
 };
 

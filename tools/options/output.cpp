@@ -46,18 +46,20 @@ std::string containers_for(Encoding encoding) {
     return join(names);
 }
 
-// "zstd" or "zstd:LEVEL".
+constexpr int kDefaultZstd = 9;
+
+// "zstd", "zstd:LEVEL" or "none".
 int parse_zstd(const std::string& text) {
-    constexpr int kDefault = 9;
+    if (text == "none") return 0;
     const auto [scheme, level] = cut(text, ':');
-    int number = kDefault;
+    int number = kDefaultZstd;
     if (text.find(':') != std::string::npos) {
         const auto [end, error] = std::from_chars(level.data(), level.data() + level.size(), number);
         if (error != std::errc() || end != level.data() + level.size()) number = 0;
     }
     if (scheme == "zstd" && number >= 1 && number <= kHighestZstdLevel) return number;
     throw UsageError(
-        fmt::format("'{}' is neither zstd nor zstd:N with N from 1 to {}", printable(text), kHighestZstdLevel));
+        fmt::format("'{}' is not zstd, zstd:N with N from 1 to {}, or none", printable(text), kHighestZstdLevel));
 }
 
 }  // namespace
@@ -95,8 +97,10 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
     add_rdo(command);
     command.choice(dds_header, "--dds-header", "H", kDdsHeaderNames, "the header of DDS files");
     command.flag(dds_mark, "--dds-mark", "mark DDS files as normal maps, as NVIDIA's tools do");
-    command.option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
-                   [this](const std::string& text) { zstd = parse_zstd(text); });
+    command
+        .option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
+                [this](const std::string& text) { zstd = parse_zstd(text); })
+        .preset = "zstd for uastc; else none";
     command
         .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
                 [this](const std::string& text) { quality = parse_int(text, range_of(&WriteOptions::jpeg_quality)); })
@@ -159,7 +163,8 @@ void OutputOptions::fill(NameFields& fields) const {
 
 Container OutputOptions::container_for(const std::string& output, Container standard_output) const {
     const Container chosen = container_of_output(output, standard_output);
-    if (zstd != 0 && !can_compress(chosen)) throw UsageError(printable(output), "--supercompress needs a KTX2 file");
+    if (zstd.value_or(0) != 0 && !can_compress(chosen))
+        throw UsageError(printable(output), "--supercompress needs a KTX2 file");
     if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm) && !can_hold(chosen, Encoding::astc_4x4))
         throw UsageError(printable(output), "--rdo-mean needs a DDS, KTX2 or ASTC file");
     if (quality && chosen != Container::jpeg)
@@ -198,7 +203,7 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     WriteOptions write = job.write_options;
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
-    write.zstd = zstd;
+    write.zstd = zstd.value_or(format == Encoding::uastc ? kDefaultZstd : write.zstd);
     write.jpeg_quality = quality.value_or(write.jpeg_quality);
     return write;
 }

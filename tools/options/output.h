@@ -27,7 +27,7 @@ struct OutputOptions {
     RdoOptions rdo;
     DdsHeader dds_header = WriteOptions{}.dds_header;
     bool dds_mark = WriteOptions{}.dds_mark;
-    int zstd = WriteOptions{}.zstd;
+    std::optional<int> zstd;  // none: blocks of Basis Universal are compressed
     std::optional<int> quality;
     std::vector<const Engine*> engines;  // of --for; each input gives an output for each
     const Engine* engine = nullptr;      // the engine of these options, which of() has set

@@ -27,11 +27,13 @@ constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_
 constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, webp, exr, dds, ktx2};
 constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8, bc7};
 constexpr Container kGltfTypes[] = {png, jpeg};
+constexpr Container kBasisTypes[] = {ktx2};
+constexpr Encoding kBasisEncodings[] = {uastc};
 constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 // KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
-constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc7};
+constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc7, uastc};
 // Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal.
 constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga};
 // PlayCanvas takes x from A of every texture of BC3, and z from B of others; its loader of KTX2 is for Basis Universal.
@@ -70,6 +72,12 @@ constexpr Engine kEngines[] = {
      "The core specification allows PNG and JPEG, of which only PNG is lossless; it requires x, y and z in R, G and B "
      "and green up.",
      kGltfTypes, kRgbCodes, RoughnessUse::green},
+    // KHR_texture_basisu: RGB of UASTC or ETC1S, linear, sides that are multiples of 4, all levels or one.
+    {"gltf-ktx2", ktx2, uastc, YAxis::up, true, "",
+     "KHR_texture_basisu allows UASTC and ETC1S of Basis Universal, with x, y and z in R, G and B and green up. "
+     "Viewers "
+     "make of UASTC what their GPU reads; they build no levels.",
+     kBasisTypes, kBasisEncodings, RoughnessUse::green},
     // normal_fragment_maps.glsl.js reads xyz; RG and BC5 need a release of 2026 (three.js pull request 32448).
     {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "

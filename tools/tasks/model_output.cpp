@@ -43,7 +43,7 @@ bool names_model(const std::string& name) {
 
 bool is_for_models(Encoding encoding) {
     return encoding == Encoding::rgb8 || encoding == Encoding::rgba8 || encoding == Encoding::rgb16 ||
-           encoding == Encoding::rgba16;
+           encoding == Encoding::rgba16 || encoding == Encoding::uastc;
 }
 
 Result<ModelOutput> maps_to_write(const std::string& input, const std::string& material,

@@ -21,7 +21,7 @@ namespace tex::cli {
 // Whether a name of an output, or a pattern of such names, is that of a model.
 [[nodiscard]] bool names_model(const std::string& name);
 
-// Whether pictures of models may have this encoding: x, y and z in R, G and B, of 8 or 16 bits.
+// Whether pictures of models may have this encoding: x, y and z in R, G and B, of 8 or 16 bits, or UASTC.
 [[nodiscard]] bool is_for_models(Encoding encoding);
 
 // What is done to a model.

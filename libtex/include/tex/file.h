@@ -135,10 +135,10 @@ inline constexpr Named<Container> kContainerNames[] = {
 // The file type that the extension of `path` names (case does not matter); nullopt for any other extension.
 [[nodiscard]] TEX_API std::optional<Container> container_of(std::string_view path);
 
-// What a container can hold. ktx2: every encoding, mip levels. dds: the same without EAC and ASTC. astc: ASTC, one
-// level. exr: half, float, rgba16f, rgba32f; mip levels. png: rgb8, rgba8, rgb16, rgba16, ag8. tiff: those of exr and
-// png. tga, webp: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and ktx2
-// can hold rg8 and rg16.)
+// What a container can hold. ktx2: every encoding, mip levels. dds: the same without EAC, ASTC and UASTC. astc: ASTC,
+// one level. exr: half, float, rgba16f, rgba32f; mip levels. png: rgb8, rgba8, rgb16, rgba16, ag8. tiff: those of exr
+// and png. tga, webp: rgb8, rgba8, ag8. bmp, jpeg: rgb8. (A picture holds one, three or four channels, so only dds and
+// ktx2 can hold rg8 and rg16.)
 [[nodiscard]] TEX_API bool can_hold(Container container, Encoding encoding);
 [[nodiscard]] TEX_API bool can_hold(Container container, Format format);
 [[nodiscard]] TEX_API bool can_hold_levels(Container container);

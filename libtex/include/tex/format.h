@@ -36,7 +36,7 @@ namespace tex::inline v1 {
 //   etc1s_rgb   8 bytes: RGB of 4x4 texels, one ETC1S block        etc1s_rgba  16 bytes: RGB, then A in the green of
 //                                                                             a second ETC1S block
 //
-// UASTC and ETC1S are read, not written. KTX2 stores ETC1S with BasisLZ, which is decoded to these blocks.
+// ETC1S is read, not written. KTX2 stores ETC1S with BasisLZ, which is decoded to these blocks.
 enum class Format {
     bc1_unorm,
     bc2_unorm,
@@ -229,7 +229,8 @@ enum class Encoding {
     rgba16,
     rgba16f,
     rgba32f,
-    bc7
+    bc7,
+    uastc
 };
 
 inline constexpr Named<Encoding> kEncodingNames[] = {
@@ -258,6 +259,7 @@ inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::rgba16f, "rgba16f", "x, y, z and A = 1 as 16-bit floats"},
     {Encoding::rgba32f, "rgba32f", "x, y, z and A = 1 as 32-bit floats"},
     {Encoding::bc7, "bc7", "BC7, x, y, z and A = 1"},
+    {Encoding::uastc, "uastc", "UASTC of Basis Universal, x, y, z and A = 1: glTF"},
 };
 
 struct EncodingInfo {
@@ -273,7 +275,7 @@ struct EncodingInfo {
 [[nodiscard]] TEX_API ExtraSet can_hold(Encoding encoding);
 
 // Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks of x and y
-// alone, so not bc7.
+// alone, so not bc7 and uastc.
 [[nodiscard]] TEX_API bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface

@@ -50,6 +50,10 @@ namespace tex::inline v1 {
 // x, y or z alone; one line; two or three lines. It is fitted to those that seem best, and the least error, as decoders
 // make it, decides. fast fits up to four ways; normal 11, and improves the best two; best 39, and improves the best
 // 12. Without data, alpha is 255 in every texel.
+//
+// UASTC: the error is that of BC7, without alpha, and so is the search, in the modes of RGB: two planes, of which one
+// holds x, y or z alone; one line; two or three lines. Hints say how transcoders make blocks of ETC1 and BC1 from a
+// block: those are chosen whose blocks have the least error of direction.
 enum class Effort { fast, normal, best };
 
 inline constexpr Named<Effort> kEffortNames[] = {
@@ -58,7 +62,8 @@ inline constexpr Named<Effort> kEffortNames[] = {
     {Effort::best, "best", "the least squared error"},
 };
 
-// The error that Effort::best minimises; the other efforts, EAC and ASTC ignore it: component. BC7: angle, always.
+// The error that Effort::best minimises; the other efforts, EAC and ASTC ignore it: component. BC7 and UASTC: angle,
+// always.
 enum class Metric { component, angle };
 
 // component: the squared error of each channel on its own; no block could have a smaller one.
@@ -132,11 +137,11 @@ struct PackedTexture : Texture {
 
 // Packs every level of a chain.
 //
-// Quantisation is described at Encoding (format.h), bc7 at Effort. Other 4x4 blocks: each channel is fitted on its own
-// (x in BC3's alpha or the first block of BC5 and RG11, y in the green of BC3's colour block or their second block). If
-// an extent is not a multiple of 4, texels outside repeat the last one and have no weight. In dxt5nm, R and B are 1 in
-// both endpoints of every block, so that every decoder returns exactly 255. A flat block decodes to 127 or 128 in G and
-// A under the rules of AMD, Intel and NVIDIA, within 0.23 degrees of (0, 0, 1).
+// Quantisation is described at Encoding (format.h), bc7 and uastc at Effort. Other 4x4 blocks: each channel is fitted
+// on its own (x in BC3's alpha or the first block of BC5 and RG11, y in the green of BC3's colour block or their second
+// block). If an extent is not a multiple of 4, texels outside repeat the last one and have no weight. In dxt5nm, R and
+// B are 1 in both endpoints of every block, so that every decoder returns exactly 255. A flat block decodes to 127 or
+// 128 in G and A under the rules of AMD, Intel and NVIDIA, within 0.23 degrees of (0, 0, 1).
 //
 // PackOptions::rdo optimises blocks for compression. PackedTexture::rdo says what that has done.
 //

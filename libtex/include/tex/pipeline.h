@@ -393,8 +393,9 @@ struct StepsReport {
 // An image, a texture or bytes of a buffer that something else uses, too (a colour of the material, a material whose
 // map stays), are left as they are, and new ones are added for the maps: in GLB in the binary chunk, if there is one. A
 // texture names the new picture as its source, whatever extension named the old one (KHR_texture_basisu,
-// MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif); WebP is named by EXT_texture_webp, which the model then
-// requires. An extension that no texture uses any more leaves the lists of the extensions.
+// MSFT_texture_dds, EXT_texture_webp, EXT_texture_avif); WebP is named by EXT_texture_webp, and KTX2 by
+// KHR_texture_basisu, which the model then requires. An extension that no texture uses any more leaves the lists of the
+// extensions.
 //
 // Tangents are an attribute of vertices. A vertex whose corners have different ones is copied to the end of all of its
 // attributes, with all of its morph targets; other vertices and their numbers stay. Attributes that grow are no longer
@@ -408,7 +409,7 @@ struct StepsReport {
 // A picture that some maps of a model get. All of them have the same image, or images of the same file or bytes.
 struct ModelPicture {
     std::vector<ModelMap> maps;
-    Container container = Container::png;  // png, jpeg or webp
+    Container container = Container::png;  // png, jpeg, webp, or ktx2 with UASTC
     std::vector<std::byte> bytes = {};     // of the file
     // Whether the slots get scale, uv_set and uv_transform of `maps`, too. Then materials without a normal map, of
     // which ModelMap::image is -1, get one.

@@ -201,7 +201,8 @@ enum tex_encoding {
     TEX_ENCODING_RGBA16 = 21,
     TEX_ENCODING_RGBA16F = 22,
     TEX_ENCODING_RGBA32F = 23,
-    TEX_ENCODING_BC7 = 24
+    TEX_ENCODING_BC7 = 24,
+    TEX_ENCODING_UASTC = 25
 };
 
 enum tex_sample { TEX_UNORM = 0, TEX_SNORM = 1, TEX_FLOAT = 2 };
@@ -314,7 +315,7 @@ typedef struct tex_encode_options {
     uint32_t size;
     int32_t encoding;  // tex_encoding
     int32_t effort;    // tex_effort: how hard block encoders search
-    int32_t metric;    // tex_metric: the error that TEX_EFFORT_BEST minimises, except in EAC, ASTC, BC7
+    int32_t metric;    // tex_metric: the error that TEX_EFFORT_BEST minimises, except in EAC, ASTC, BC7, UASTC
     int32_t y_axis;    // tex_y_axis of what is stored
 } tex_encode_options;
 #define TEX_ENCODE_OPTIONS \
@@ -324,8 +325,8 @@ typedef struct tex_encode_options {
 // Fails with TEX_OUT_OF_MEMORY.
 TEX_C_API int32_t tex_encode_prepare(const tex_encode_options* options);
 
-// The bytes of scratch that tex_encode() needs: 0 for all encodings but ASTC's and BC7; 0 too if arguments or options
-// are wrong.
+// The bytes of scratch that tex_encode() needs: 0 for all encodings but ASTC's, BC7 and UASTC; 0 too if arguments or
+// options are wrong.
 TEX_C_API size_t tex_encode_size(int32_t width, const tex_encode_options* options);
 
 // Rows [first, end) of normals, as rows of texels or blocks. `first` is a multiple of the height of a block, and `end`

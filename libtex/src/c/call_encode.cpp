@@ -56,7 +56,7 @@ void encode_whole_blocks(const WholeBlocks& codec, const tex_map& map, const Pac
                 *to++ = side * row.y[i];
                 if (codec.values == 2) continue;
                 *to++ = row.z[i];
-                *to++ = 1.0f;
+                if (codec.values == 4) *to++ = 1.0f;
             }
         }
         // Rows of blocks may lie apart: they are encoded one by one then.

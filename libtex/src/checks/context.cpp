@@ -154,7 +154,8 @@ Result<void> measure(CheckContext& context) {
 }
 
 bool has_free_lengths(const CheckContext& context) {
-    return context.options.any_length || context.texture.format == Format::bc7_unorm;
+    return context.options.any_length || context.texture.format == Format::bc7_unorm ||
+           context.texture.format == Format::uastc_4x4_unorm;
 }
 
 bool has_more_data(const Stored& stored, const TexelCounts& counts) {

@@ -30,11 +30,15 @@ struct Bc7Group {
 
 // How a group is fitted.
 struct Bc7Steps {
-    bool starts;   // finds endpoints, else improves those that are there
-    int rounds;    // of moving each endpoint by a step
-    bool pairs;    // also moves both endpoints of a channel, and changes lowest bits
-    bool indices;  // also stores indices
+    bool starts;     // finds endpoints, else improves those that are there
+    int rounds;      // of moving each endpoint by a step
+    bool pairs;      // also moves both endpoints of a channel, and changes lowest bits
+    bool indices;    // also stores indices
+    int solves = 0;  // of two planes: least squares for the best pairs of indices, if the rules say so
 };
+
+// A round whose moves are single steps in all formats.
+inline constexpr int kBc7LateRound = 4;
 
 // Moves of the two endpoints of a channel, in steps; the first four are those of one endpoint.
 inline constexpr int kBc7Moves = 8;

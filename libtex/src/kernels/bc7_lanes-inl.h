@@ -71,18 +71,38 @@ HWY_INLINE FloatVec Bc7Index(FloatVec place, int levels) {
     return hn::Floor(Bc7Clamp(place, static_cast<float>(levels - 1) + 0.25f));
 }
 
+// How BC7 makes codes of what a block stores. Other formats that are fitted alike have rules of their own.
+struct Bc7Rules {
+    // A code at the weight w is the floor of end0 kScale + kOffset + (end1 - end0) w kStep.
+    static constexpr float kScale = 1.0f, kOffset = 0.5f, kStep = 1.0f / 64.0f;
+    // Whether endpoints in two planes are judged by the best pair of indices, not by the nearest scalar.
+    static constexpr bool kPairs = false;
+
+    static HWY_INLINE float Top(int bits) { return Bc7Top(bits); }
+    // How far endpoints move in a round.
+    static HWY_INLINE float Stride(int /*bits*/, int /*round*/) { return 1.0f; }
+    static HWY_INLINE FloatVec Widen(FloatVec code, int bits) { return Bc7Widen(code, bits); }
+    static HWY_INLINE FloatVec Round(FloatVec value, int bits) { return Bc7Round(value, bits); }
+    static HWY_INLINE FloatVec Round(FloatVec value, int bits, FloatVec lowest) {
+        return Bc7Round(value, bits, lowest);
+    }
+    static HWY_INLINE float Weight(int index, int levels) { return Bc7Weight(index, levels); }
+    static HWY_INLINE FloatVec Weight(FloatVec index, int levels) { return Bc7Weight(index, levels); }
+};
+
 // A channel between two endpoints.
-struct Bc7Ramp {
-    FloatVec base, step;      // of values with 1/2 added, for a weight of 0 and each 1/64
+template <class Rules>
+struct BlockRamp {
+    FloatVec base, step;      // of values before rounding down, for a weight of 0 and each 1/64
     FloatVec start, inverse;  // of indices with 1/2 added
     int levels;
 
-    HWY_INLINE Bc7Ramp(FloatVec end0, FloatVec end1, int bits, int levels_) : levels(levels_) {
+    HWY_INLINE BlockRamp(FloatVec end0, FloatVec end1, int bits, int levels_) : levels(levels_) {
         const FloatTag d;
-        const FloatVec e0 = Bc7Widen(end0, bits), range = hn::Sub(Bc7Widen(end1, bits), e0);
+        const FloatVec e0 = Rules::Widen(end0, bits), range = hn::Sub(Rules::Widen(end1, bits), e0);
         const FloatVec some = hn::IfThenElse(hn::Eq(range, hn::Zero(d)), Bc7Number(1e9f), range);
-        base = hn::Add(e0, Bc7Number(0.5f));
-        step = hn::Mul(range, Bc7Number(1.0f / 64.0f));
+        base = MulThenAdd(e0, Bc7Number(Rules::kScale), Bc7Number(Rules::kOffset));
+        step = hn::Mul(range, Bc7Number(Rules::kStep));
         inverse = hn::Div(Bc7Number(static_cast<float>(levels - 1)), some);
         start = MulThenAdd(hn::Sub(Bc7Number(kBc7Middle), e0), inverse, Bc7Number(0.5f));
     }
@@ -92,7 +112,7 @@ struct Bc7Ramp {
         return hn::Sub(hn::Floor(MulThenAdd(weight, step, base)), Bc7Number(kBc7Middle));
     }
     HWY_INLINE FloatVec index(FloatVec value) const { return Bc7Index(MulThenAdd(value, inverse, start), levels); }
-    HWY_INLINE FloatVec nearest(FloatVec v) const { return value(Bc7Weight(index(v), levels)); }
+    HWY_INLINE FloatVec nearest(FloatVec v) const { return value(Rules::Weight(index(v), levels)); }
 };
 
 // The squared sine of the angle between a vector and a unit vector, and from a right angle on, 2 minus it.

@@ -81,12 +81,14 @@ void set_slot(JsonNode& root, JsonNode& node, const GltfSlot& slot, const ModelM
 }
 
 void show_image(JsonNode& root, JsonNode& texture, std::int64_t image, Container container) {
-    constexpr const char* kWebp = "EXT_texture_webp";
+    const char* const extension = container == Container::webp   ? "EXT_texture_webp"
+                                  : container == Container::ktx2 ? "KHR_texture_basisu"
+                                                                 : nullptr;
     if (JsonNode* const extensions = texture.member("extensions")) {
         for (const char* const name : kTextureExtensions) extensions->remove(name);
         if (extensions->size() == 0) texture.remove("extensions");
     }
-    if (container != Container::webp) {
+    if (extension == nullptr) {
         const JsonNode* const source = texture.member("source");
         if (source == nullptr || text_of(*source) != std::to_string(image))
             texture.set("source", std::to_string(image));
@@ -94,8 +96,8 @@ void show_image(JsonNode& root, JsonNode& texture, std::int64_t image, Container
     }
     texture.remove("source");
     if (texture.member("extensions") == nullptr) texture.set("extensions", "{}");
-    texture.member("extensions")->set(kWebp, "{\"source\":" + std::to_string(image) + "}");
-    add_extension(root, kWebp, true);
+    texture.member("extensions")->set(extension, "{\"source\":" + std::to_string(image) + "}");
+    add_extension(root, extension, true);
 }
 
 std::int64_t add_texture(JsonNode& root, std::optional<std::int64_t> sampler, std::int64_t image, Container container) {

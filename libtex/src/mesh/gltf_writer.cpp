@@ -29,6 +29,7 @@ Error bad_picture(std::string reason) { return {ErrorCode::bad_option, {}, std::
 
 std::string_view media_type_of(Container container) {
     if (container == Container::webp) return "image/webp";
+    if (container == Container::ktx2) return "image/ktx2";
     return container == Container::jpeg ? "image/jpeg" : "image/png";
 }
 
@@ -110,8 +111,8 @@ Result<void> GltfWriter::check_pictures() {
     for (const ModelPicture& picture : pictures_) {
         if (picture.maps.empty()) return bad_picture("a picture is for no map");
         if (picture.container != Container::png && picture.container != Container::jpeg &&
-            picture.container != Container::webp)
-            return bad_picture("a picture of a model is PNG, JPEG or WebP");
+            picture.container != Container::webp && picture.container != Container::ktx2)
+            return bad_picture("a picture of a model is PNG, JPEG, WebP or KTX2");
         for (const ModelMap& map : picture.maps) {
             if (map.image < 0 && (!picture.sets_slots || map.slot != NormalSlot::normal))
                 return bad_picture("the map of material " + std::to_string(map.material) + " has no image");
@@ -294,6 +295,7 @@ void GltfWriter::name_picture(std::size_t picture) {
     const std::string extension = has_extension                  ? home.file.substr(dot)
                                   : container == Container::jpeg ? std::string(".jpg")
                                   : container == Container::webp ? std::string(".webp")
+                                  : container == Container::ktx2 ? std::string(".ktx2")
                                                                  : std::string(".png");
     const std::string name = names_.name_for(home.file, extension);
     home.uri = uri_of_path(name);

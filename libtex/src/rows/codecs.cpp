@@ -10,6 +10,7 @@
 #include "kernels/angle_search.h"
 #include "kernels/encode_astc.h"
 #include "kernels/encode_bc7.h"
+#include "kernels/encode_uastc.h"
 #include "rows/decode_rows.h"
 #include "rows/rdo_rows.h"
 
@@ -34,6 +35,14 @@ constexpr WholeBlocks kBc7Blocks = {.values = 4,
                                     .is_prepared = [](Format, Effort) { return true; },
                                     .memory = bc7_memory,
                                     .rows_at_once = bc7_rows_at_once};
+constexpr WholeBlocks kUastcBlocks = {.values = 3,
+                                      .encode = encode_uastc,
+                                      .encode_values = nullptr,
+                                      .optimise = nullptr,
+                                      .prepare = [](Format, Effort) {},
+                                      .is_prepared = [](Format, Effort) { return true; },
+                                      .memory = uastc_memory,
+                                      .rows_at_once = uastc_rows_at_once};
 
 void decode_row_of_texels(Format format, const std::byte* texels, int width, const ChannelRows& rows, std::ptrdiff_t) {
     decode_texels(format, texels, width, rows);
@@ -53,7 +62,7 @@ constexpr Codec kBc5 = {kKhrBc5, decode_blocks, encode_bc5_unorm, {HalfKind::bc4
 constexpr Codec kBc5Snorm = {kKhrBc5, decode_blocks, encode_bc5_snorm, {HalfKind::bc4_snorm, HalfKind::bc4_snorm}};
 constexpr Codec kBc6h = {.khr_model = kKhrBc6h, .decode = decode_row_of_bptc, .is_written = false};
 constexpr Codec kBc7 = {.khr_model = kKhrBc7, .decode = decode_row_of_bptc, .whole = &kBc7Blocks};
-constexpr Codec kUastc = {.khr_model = kKhrUastc, .decode = decode_row_of_basis, .is_written = false};
+constexpr Codec kUastc = {.khr_model = kKhrUastc, .decode = decode_row_of_basis, .whole = &kUastcBlocks};
 constexpr Codec kEtc1s = {.khr_model = kKhrEtc1s, .decode = decode_row_of_basis, .is_written = false};
 constexpr Codec kEac = {kKhrEtc2, decode_blocks, encode_eac_unorm, {HalfKind::eac_unorm, HalfKind::eac_unorm}};
 constexpr Codec kEacSnorm = {kKhrEtc2, decode_blocks, encode_eac_snorm, {HalfKind::eac_snorm, HalfKind::eac_snorm}};
@@ -163,6 +172,7 @@ constexpr EncodingRow kEncodings[] = {
     {Encoding::rgba16f, TEX_ENCODING_RGBA16F, {rgba16_float, kXyz1}},
     {Encoding::rgba32f, TEX_ENCODING_RGBA32F, {rgba32_float, kXyz1}},
     {Encoding::bc7, TEX_ENCODING_BC7, {bc7_unorm, kXyz1}},
+    {Encoding::uastc, TEX_ENCODING_UASTC, {uastc_4x4_unorm, kXyz1}},
 };
 
 static_assert([] {

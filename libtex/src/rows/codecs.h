@@ -19,9 +19,10 @@ namespace tex::inline v1 {
 
 class RdoTally;
 
-// Encodes blocks in which all components share what a block has: see kernels/encode_astc.h and kernels/encode_bc7.h.
+// Encodes blocks in which all components share what a block has: see kernels/encode_astc.h, encode_bc7.h and
+// encode_uastc.h.
 struct WholeBlocks {
-    int values;  // of a texel: 2 are x and y; 4 are x, y, z and alpha
+    int values;  // of a texel: 2 are x and y; 3 are x, y and z; 4 are these and alpha
     void (*encode)(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
     // Encodes one channel; null if there is no such encoder.
     void (*encode_values)(Format format, Effort effort, const float* values, Extent extent, std::byte* blocks);

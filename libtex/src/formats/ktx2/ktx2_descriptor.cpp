@@ -45,6 +45,7 @@ std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model) {
             if (info.channels == 2) return {block_sample(info, 0, 0), block_sample(info, 1, 64)};
             return {block_sample(info, 0, 0)};
         case kKhrBc7:
+        case kKhrUastc:                                       // the channel is RGB
         case kKhrAstc: return {{0, 0, 128, 0, 0xffffffffu}};  // the whole block
         default: return {block_sample(info, 0, 0)};
     }

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "kernels/uastc_batch.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "blocks/uastc_modes.h"
+#include "kernels/bc7_guess.h"
+#include "kernels/uastc_kinds.h"
+#include "kernels/uastc_solid.h"
+
+namespace tex::inline v1 {
+namespace {
+
+constexpr unsigned kAllTexels = 0xffff;
+
+std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+// The most tries that a block has at a time.
+int most_tries(const UastcEffort& effort) { return effort.planes + effort.search.parts + 3; }
+
+std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(value); }
+
+}  // namespace
+
+UastcEffort uastc_effort(Effort effort) {
+    switch (effort) {
+        case Effort::fast: return {effort, 1, 1.0f, {2, 30, false, 0}, 1, 0, false, {2, 0}};
+        case Effort::normal: return {effort, 2, 1.5f, {3, 30, true, 0}, 2, 2, false, {3, 3}};
+        default: return {effort, 2, 4.0f, {kUastcMostParts, 30, true, 3}, 10, 12, true, {3, 6}};
+    }
+}
+
+UastcBatch::UastcBatch(const UastcEffort& effort) : effort_(effort), lanes_(bc7_lanes()) {
+    const std::size_t tries = at(kMost) * at(most_tries(effort));
+    texels_.resize(at(kMost + kBc7Lanes));
+    tries_.reserve(tries);
+    parts_.reserve(3 * tries);
+    sorted_.reserve(3 * tries);
+    indices_.resize(at(kMost));
+}
+
+std::size_t UastcBatch::memory(const UastcEffort& effort) {
+    const std::size_t tries = at(kMost) * at(most_tries(effort));
+    return LentMemory::taken_by(at(kMost + kBc7Lanes) * sizeof(Texels)) + LentMemory::taken_by(tries * sizeof(Try)) +
+           2 * LentMemory::taken_by(3 * tries * sizeof(Part)) + LentMemory::taken_by(at(kMost) * sizeof(Indices));
+}
+
+// Makes vectors unit vectors.
+void UastcBatch::prepare(int count) {
+    for (int block = 0; block < count; ++block) {
+        for (float(&texel)[3] : texels_[at(block)].value) {
+            const float length = std::sqrt(texel[0] * texel[0] + texel[1] * texel[1] + texel[2] * texel[2]);
+            if (length > 1e-6f) {
+                for (float& component : texel) component /= length;
+            } else {
+                texel[0] = texel[1] = 0.0f;
+                texel[2] = 1.0f;
+            }
+        }
+    }
+    for (int block = count; block % lanes_ != 0; ++block) texels_[at(block)] = texels_[at(count - 1)];
+}
+
+// Adds what seems worth a fit; lines with the errors that they are guessed to have.
+void UastcBatch::add_tries(int block, int lane) {
+    Try one = {};
+    one.error = kBc7None;
+    one.block = static_cast<std::int16_t>(block);
+    one.kind = kUastcPlanes;
+    const auto axis = static_cast<int>(guesses_.axis[lane]);
+    const int others[2] = {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+    for (int n = 0; n < effort_.planes; ++n) {
+        one.component[0] = static_cast<std::uint8_t>(others[n]);
+        one.component[1] = static_cast<std::uint8_t>(others[1 - n]);
+        one.component[2] = static_cast<std::uint8_t>(axis);
+        for (int e = 0; e < 2; ++e) {
+            one.ends[0][e][0] = to_byte(guesses_.ends[n][e][lane]);
+            one.ends[0][e][1] = to_byte(guesses_.ends[1 - n][e][lane]);
+        }
+        tries_.push_back(one);
+    }
+    for (int k = 0; k < 3; ++k) {
+        one.component[k] = static_cast<std::uint8_t>(k);
+        for (auto& end : one.ends[0]) end[k] = 0;
+    }
+    for (int k = kUastcOne; k < kUastcParts; ++k) {
+        one.kind = static_cast<std::uint8_t>(k);
+        one.error = guesses_.line[k - kUastcOne][lane];
+        tries_.push_back(one);
+    }
+    for (int k = 0; k < effort_.search.parts; ++k) {
+        const auto number = static_cast<int>(guesses_.part[k][lane]);
+        if (number < 0) break;
+        one.kind = static_cast<std::uint8_t>(number / 64);
+        one.pattern = static_cast<std::uint8_t>(number % 64);
+        one.error = guesses_.part_error[k][lane];
+        tries_.push_back(one);
+    }
+}
+
+void UastcBatch::gather(const Try& from, const Part& part, int lane) {
+    const Texels& texels = texels_[at(from.block)];
+    int k = 0;
+    for (unsigned left = part.mask; left != 0; left &= left - 1, ++k) {
+        const float* const value = texels.value[std::countr_zero(left)];
+        for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = value[from.component[c]];
+        group_.weight[k][lane] = 1.0f;
+    }
+    for (; k < group_.texels; ++k) {
+        for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = 0.0f;
+        group_.weight[k][lane] = 0.0f;
+    }
+    for (int e = 0; e < 2; ++e) {
+        for (int c = 0; c < 3; ++c) group_.ends[e][c][lane] = from.ends[part.subset][e][c];
+    }
+}
+
+void UastcBatch::scatter(const Part& part, int lane, bool indices, Try& to) {
+    to.error += group_.error[lane];
+    for (int e = 0; e < 2; ++e) {
+        for (int c = 0; c < 3; ++c) to.ends[part.subset][e][c] = to_byte(group_.ends[e][c][lane]);
+    }
+    if (!indices) return;
+    Indices& found = indices_[at(to.block)];
+    int k = 0;
+    for (unsigned left = part.mask; left != 0; left &= left - 1, ++k) {
+        const int texel = std::countr_zero(left);
+        found.line[texel] = to_byte(group_.color[k][lane]);
+        found.second[texel] = to_byte(group_.scalar[k][lane]);
+    }
+}
+
+// Drops lines whose guesses are above the error of the block in two planes.
+void UastcBatch::drop_hopeless() {
+    std::size_t kept = 0;
+    float least = 0;
+    for (std::size_t k = 0; k < tries_.size(); ++k) {
+        const Try one = tries_[k];
+        if (k == 0 || one.block != tries_[k - 1].block) least = kBc7None;  // the planes of a block come first
+        if (one.kind < kUastcOne) least = std::min(least, one.error);
+        if (one.kind < kUastcOne || one.error <= least * effort_.worth) tries_[kept++] = one;
+    }
+    tries_.resize(kept);
+}
+
+// Sorts parts by their numbers of texels.
+void UastcBatch::sort_parts() {
+    std::size_t place[18] = {};
+    for (const Part& part : parts_) ++place[part.texels + 1];
+    for (int k = 1; k < 18; ++k) place[k] += place[k - 1];
+    sorted_.resize(parts_.size());
+    for (const Part& part : parts_) sorted_[place[part.texels]++] = part;
+    parts_.swap(sorted_);
+}
+
+// Fits the tries of these kinds, kind by kind, and those of several subsets subset by subset.
+void UastcBatch::fit(int first, int end, const Bc7Steps& steps) {
+    group_.has_alpha = false;
+    for (int kind = first; kind < end; ++kind) {
+        const Bc7Kind& which = kUastcKindTable[kind];
+        parts_.clear();
+        for (std::size_t k = 0; k < tries_.size(); ++k) {
+            if (tries_[k].kind != kind) continue;
+            tries_[k].error = 0.0f;
+            for (int subset = 0; subset < which.subsets; ++subset) {
+                const unsigned texels =
+                    which.subsets == 1 ? kAllTexels : uastc_texels(which.mode, tries_[k].pattern, subset);
+                parts_.push_back({static_cast<int>(k), static_cast<std::uint16_t>(texels),
+                                  static_cast<std::uint8_t>(subset), static_cast<std::uint8_t>(std::popcount(texels))});
+            }
+        }
+        if (which.subsets > 1) sort_parts();
+        for (std::size_t k = 0; k < parts_.size(); k += at(lanes_)) {
+            const int used = static_cast<int>(std::min(at(lanes_), parts_.size() - k));
+            group_.texels = parts_[k + at(used - 1)].texels;
+            for (int lane = 0; lane < lanes_; ++lane) {
+                const Part& part = parts_[k + at(std::min(lane, used - 1))];
+                gather(tries_[at(part.index)], part, lane);
+            }
+            if (kind < kUastcOne)
+                fit_uastc_planes(which, steps, group_);
+            else
+                fit_uastc_lines(which, steps, group_);
+            for (int lane = 0; lane < used; ++lane) {
+                const Part& part = parts_[k + at(lane)];
+                scatter(part, lane, steps.indices, tries_[at(part.index)]);
+            }
+        }
+    }
+}
+
+// Keeps the best so many tries of each block, blocks in order.
+void UastcBatch::keep(int count) {
+    const auto better = [](const Try& a, const Try& b) { return a.error < b.error; };
+    std::size_t kept = 0;
+    for (std::size_t first = 0, end = 0; first < tries_.size(); first = end) {
+        while (end < tries_.size() && tries_[end].block == tries_[first].block) ++end;
+        for (std::size_t k = first; k < std::min(end, first + at(count)); ++k) {
+            const auto from = tries_.begin() + static_cast<std::ptrdiff_t>(k);
+            std::iter_swap(from, std::min_element(from, tries_.begin() + static_cast<std::ptrdiff_t>(end), better));
+            tries_[kept++] = *from;
+        }
+    }
+    tries_.resize(kept);
+}
+
+UastcContent UastcBatch::content_of(const Try& found) const {
+    UastcContent content;
+    content.mode = kUastcKindTable[found.kind].mode;
+    content.pattern = found.pattern;
+    content.second_channel = found.component[0];
+    for (int s = 0; s < 3; ++s) {
+        for (int e = 0; e < 2; ++e) {
+            for (int c = 0; c < 3; ++c) content.ends[s][e][found.component[c]] = found.ends[s][e][c];
+        }
+    }
+    const Indices& indices = indices_[at(found.block)];
+    std::copy_n(indices.line, 16, content.weights[0]);
+    std::copy_n(indices.second, 16, content.weights[1]);
+    return content;
+}
+
+// Blocks of one direction are stored as one colour.
+bool UastcBatch::write_solid(int block, std::byte* to) {
+    const float(&value)[16][3] = texels_[at(block)].value;
+    for (const float(&texel)[3] : value) {
+        if (!std::equal(texel, texel + 3, value[0])) return false;
+    }
+    write_uastc(uastc_solid(value[0]), to);
+    return true;
+}
+
+// What BC1 may take from a block.
+void UastcBatch::gather_hints(const UastcContent& content, int lane) {
+    const UastcMode& mode = kUastcModeTable[content.mode];
+    hints_.is_one[lane] = mode.subsets == 1 ? 1.0f : 0.0f;
+    for (int e = 0; e < 2; ++e) {
+        for (int c = 0; c < 3; ++c) hints_.end[e][c][lane] = uastc_code(mode.color_range, content.ends[0][e][c]);
+    }
+    // So many weights at either end are the first and the last step: 6 of 32, 1 of 4.
+    constexpr int kFirst[6] = {0, 0, 1, 2, 3, 6};
+    const int levels = 1 << mode.weight_bits, first = kFirst[mode.weight_bits];
+    for (int k = 0; k < kUastcTexels; ++k) {
+        const int weight = content.weights[0][k];
+        const int steps =
+            (weight >= first ? 1 : 0) + (2 * weight >= levels ? 1 : 0) + (weight >= levels - first ? 1 : 0);
+        hints_.step[k][lane] = static_cast<float>(steps);
+    }
+}
+
+// Finds hints for what decoders make of each block, and writes it.
+void UastcBatch::write(int count, std::byte* blocks) {
+    for (int first = 0; first < count; first += lanes_) {
+        UastcContent contents[kBc7Lanes];
+        for (int lane = 0; lane < lanes_; ++lane) {
+            const int block = std::min(first + lane, count - 1);
+            contents[lane] = content_of(tries_[at(block)]);
+            std::uint8_t codes[3][16];
+            uastc_texels(contents[lane], codes);
+            gather_hints(contents[lane], lane);
+            for (int k = 0; k < 16; ++k) {
+                for (int c = 0; c < 3; ++c) {
+                    hints_.value[k][c][lane] = texels_[at(block)].value[k][c];
+                    hints_.code[k][c][lane] = codes[c][k];
+                }
+            }
+        }
+        find_etc1_hints(effort_.effort, hints_);
+        find_bc1_hints(hints_);
+        for (int lane = 0; lane < std::min(lanes_, count - first); ++lane) {
+            std::byte* const to = blocks + std::ptrdiff_t{first + lane} * kUastcBlockBytes;
+            if (write_solid(first + lane, to)) continue;
+            UastcHints& hints = contents[lane].hints;
+            hints.flip = hints_.flip[lane] > 0;
+            hints.diff = hints_.diff[lane] > 0;
+            for (int half = 0; half < 2; ++half) hints.table[half] = to_byte(hints_.table[half][lane]);
+            hints.bias = to_byte(hints_.bias[lane]);
+            hints.bc1_ends = hints_.bc1[lane] > 1.5f;
+            hints.bc1_weights = hints_.bc1[lane] > 0.5f && !hints.bc1_ends;
+            write_uastc(contents[lane], to);
+        }
+    }
+}
+
+void UastcBatch::encode(int count, std::byte* blocks) {
+    prepare(count);
+    tries_.clear();
+    for (int first = 0; first < count; first += lanes_) {
+        group_.texels = 16;
+        for (int lane = 0; lane < lanes_; ++lane) {
+            const Texels& texels = texels_[at(first + lane)];
+            for (int k = 0; k < 16; ++k) {
+                for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = texels.value[k][c];
+            }
+        }
+        guess_uastc(group_, effort_.search, guesses_);
+        for (int lane = 0; lane < std::min(lanes_, count - first); ++lane) add_tries(first + lane, lane);
+    }
+    // Where a block has one try in two planes, which nothing improves, its indices are final, unless a line is better.
+    const bool is_final = effort_.planes == 1 && effort_.rounds == 0;
+    fit(kUastcPlanes, kUastcOne, {true, 0, false, is_final, effort_.solves[0]});
+    drop_hopeless();
+    fit(kUastcOne, kUastcKinds, {true, 0, false, false});
+    keep(effort_.kept);
+    if (effort_.rounds > 0) {
+        fit(kUastcPlanes, kUastcKinds, {false, effort_.rounds, effort_.pairs, false, effort_.solves[1]});
+        keep(1);
+    }
+    fit(is_final ? kUastcOne : kUastcPlanes, kUastcKinds, {false, 0, false, true});
+    write(count, blocks);
+}
+
+}  // namespace tex::inline v1

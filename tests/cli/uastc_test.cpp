@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// --format uastc: what the commands make of it.
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+
+namespace tex::cli {
+
+class WrittenUastc : public testing::Test {
+protected:
+    WrittenUastc() {
+        scratch_.add_sample("bricks.png", "bricks.png");
+        does("bake-normals bricks.png -o b.png --bumpiness 8");
+    }
+    Ran does(const std::string& script) {
+        Ran ran = shell(scratch_, "set -e; " + script);
+        EXPECT_EQ(ran.code, 0) << script << ": " << ran.out << ran.err;
+        return ran;
+    }
+    // A little-endian number of a file.
+    unsigned number(const std::string& name, std::size_t at) {
+        const std::string bytes = scratch_.read(name);
+        unsigned value = 0;
+        for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+        return value;
+    }
+    Scratch scratch_;
+};
+
+// KTX 2.0: VkFormat 0, values of 1 byte, scheme 2 (Zstandard). Data Format Specification: model 166, linear transfer,
+// blocks of 4x4 texels, one sample of 128 bits, of RGB.
+TEST_F(WrittenUastc, IsAFileOfBasisUniversal) {
+    does(
+        "pack-normals b.png -o u.ktx2 --format uastc --mips all; check-normals u.ktx2 --fail-on warning --require "
+        "format=uastc; compare-normals b.png u.ktx2 --max-mean 1.2; "
+        "pack-normals b.png -o plain.ktx2 --format uastc --supercompress none");
+    EXPECT_EQ(number("u.ktx2", 12), 0u);
+    EXPECT_EQ(number("u.ktx2", 16), 1u);
+    EXPECT_EQ(number("u.ktx2", 44), 2u);
+    EXPECT_EQ(number("plain.ktx2", 44), 0u);
+    const std::size_t descriptor = number("u.ktx2", 48), plain = number("plain.ktx2", 48);
+    EXPECT_EQ(number("u.ktx2", descriptor + 12) & 0xff00ffu, 0x100a6u);
+    EXPECT_EQ(number("u.ktx2", descriptor + 16), 0x0303u);
+    EXPECT_EQ(number("u.ktx2", descriptor + 20), 0u);
+    EXPECT_EQ(number("plain.ktx2", plain + 20), 16u);
+    EXPECT_EQ(number("u.ktx2", descriptor + 28), 127u << 16);
+    EXPECT_LT(scratch_.read("u.ktx2").size(), 1.34 * static_cast<double>(scratch_.read("plain.ktx2").size()));
+}
+
+TEST_F(WrittenUastc, IsRefusedWhereItCannotBe) {
+    const auto fails = [&](const std::string& line, const std::string& reason) {
+        const Ran ran = shell(scratch_, line);
+        EXPECT_EQ(ran.code, 2) << ran.err;
+        EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
+    };
+    fails("pack-normals b.png -o x.dds --format uastc", "uastc goes into .ktx2");
+    fails("pack-normals b.png -o x.ktx2 --format uastc --rdo-mean 0.5", "--rdo-mean needs --format");
+    fails("pack-normals b.png -o x.ktx2 --format uastc --alpha bricks.png", "alpha");
+}
+
+// The picture takes the place of the old one; the extension is used and required.
+TEST_F(WrittenUastc, ReplacesTheMapsOfAModel) {
+    scratch_.write(
+        "m.gltf", R"({"asset":{"version":"2.0"},"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],)"
+                  R"("images":[{"uri":"b.png"}]})");
+    does(
+        "mkdir out same; pack-normals m.gltf -o out/m.gltf --format uastc; compare-normals b.png out/b.ktx2 "
+        "--max-mean 1.2; pack-normals m.gltf -o same/m.gltf --for gltf-ktx2; cmp out/b.ktx2 same/b.ktx2");
+    const auto model = nlohmann::json::parse(scratch_.read("out/m.gltf"));
+    EXPECT_EQ(model["images"][0]["uri"], "b.ktx2");
+    EXPECT_EQ(model["textures"][0]["extensions"]["KHR_texture_basisu"]["source"], 0);
+    EXPECT_FALSE(model["textures"][0].contains("source"));
+    EXPECT_EQ(model["extensionsRequired"][0], "KHR_texture_basisu");
+    EXPECT_GT(number("out/b.ktx2", 40), 1u) << "viewers build no levels";
+}
+
+}  // namespace tex::cli
