@@ -100,7 +100,8 @@ Result<void> PackCommand::pack_image(Job& job, const std::vector<std::shared_ptr
     normals.note(job, first.path, packed->source);
     note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding}, first.path);
     if (job.task.container == Container::ktx2 && (packed->extent.width % 4 != 0 || packed->extent.height % 4 != 0))
-        repeated_.add(job, first.path, "KHR_texture_basisu requires sides that are multiples of 4: see --max-size");
+        repeated_.add(job, first.path,
+                      "KHR_texture_basisu requires sides that are multiples of 4, and viewers may refuse this");
     picture.bytes = std::move(*bytes);
     for (const auto& map : maps) {
         Json line;
