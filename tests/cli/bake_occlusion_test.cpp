@@ -100,7 +100,8 @@ TEST_F(BakeOcclusion, BytesDoNotDependOnThreads) {
 TEST_F(BakeOcclusion, RefusesWhatCannotBe) {
     refuses("bake-normals h.png -o n.png --occlusion-distance 4", "needs --occlusion-out");
     refuses("bake-normals h.png -o n.png --occlusion-out -", "needs a file");
-    refuses("bake-normals h.png -o n.png --occlusion-out ao.png --occlusion-directions 3", "at least 4 and at most 1024");
+    refuses("bake-normals h.png -o n.png --occlusion-out ao.png --occlusion-directions 3",
+            "at least 4 and at most 1024");
     refuses("bake-normals h.png -o n.png --occlusion-out n.png", "n.png");
 }
 

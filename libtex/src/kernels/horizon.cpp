@@ -165,7 +165,7 @@ HWY_INLINE V shaded(const Aspect& of) {
     return hn::Sub(upwards, hn::Mul(of.slope, squared_cosines(of)));
 }
 
-// The same integral of the direction times that cosine, along the level and upwards.
+// The direction times that cosine, integrated likewise: along the level and upwards.
 struct Light {
     V along, up;
 };
