@@ -20,6 +20,7 @@ LIGHTS = {"above": (0, 0.6, 0.8), "left": (-0.6, 0, 0.8)}
 FILES = {
     "PNG, +Y": "bake-normals bump.png -o map.png $bake",
     "PNG, -Y": "bake-normals bump.png -o map-down.png $bake --y down",
+    "PNG, +Y, alpha 0": "pack-normals map.png -o map-clear.png --format rgba8 --alpha 0 --no-sync --quiet",
     "EXR of n": "bake-normals bump.png -o map.exr $bake",
     "DDS, dxt5nm": "bake-normals bump.png -o dxt5nm.dds --format dxt5nm $bake $all",
     "DDS, bc5": "bake-normals bump.png -o bc5.dds --format bc5 $bake $all",
@@ -63,7 +64,8 @@ DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament")
 
 
 def file_of(name):
-    return next(word for word in FILES[name].split() if "." in word and word != "bump.png")
+    words = FILES[name].split()
+    return words[words.index("-o") + 1]
 
 
 def cases_of(engine, gate=False):
