@@ -209,10 +209,8 @@ constexpr Rule kRules[] = {
      "Compress it again from its uncompressed source, as BC5 or DXT5nm.", "N201 N202 N304 N310"},
     {"N307", "seam", damage, error, false, "The map does not meet itself at its borders.",
      "Where the map repeats, x or y changes more from its last line to its first than between any two lines inside, by "
-     "a fifth or more, and at least 1.8 times as much as between 98 % of them. A border in a joint, as bricks have "
-     "them "
-     "inside, is no seam; a wall along it, as bakes of heights that do not repeat have, is one. Only if tiles is "
-     "required.",
+     "a fifth or more, and at least 1.8 times as much as between 98 % of them, joints of bricks too; or a wall stands "
+     "along the border, as in bakes of heights that do not repeat. Off unless tiles is required.",
      "Make the map from heights that repeat, and bake it with --wrap repeat; or do not require tiles of it.", ""},
     {"N308", "channels-exchanged", damage, error, true, "Two channels are exchanged, or the picture was turned.",
      "Either another channel than the third holds z (blue, green, red order), or the slopes have curl as they stand "
