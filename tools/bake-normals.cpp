@@ -19,6 +19,7 @@
 #include "options/mips.h"
 #include "options/sky.h"
 #include "options/tiles.h"
+#include "tasks/repeated_warnings.h"
 #include "tasks/written_levels.h"
 
 namespace {
@@ -62,6 +63,7 @@ private:
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::HeightReader reader_;
+    mutable cli::RepeatedWarnings walls_;
     cli::WrapOptions wrap_;
     cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
@@ -206,14 +208,14 @@ void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
 void BakeNormals::warn_of_border(cli::Job& job, double ratio) const {
     constexpr double kWall = 2.0;
     if (ratio <= kWall || command.given("--wrap") || files.tiles) return;
-    job.warn(
-        fmt::format("a wall along the border, {:.2g} times as steep as anything inside: these heights do not "
-                    "repeat, but are baked as if they did; --wrap clamp (--wrap repeat: without this warning)",
-                    ratio));
+    walls_.add(job, job.task.input,
+               "a wall along the border, steeper than anything inside: these heights do not repeat, but are baked as "
+               "if they did; --wrap clamp (--wrap repeat: without this warning)");
 }
 
 cli::ExitCode BakeNormals::finish(cli::Console& console) {
     reader_.warn_of_files(console);
+    walls_.print(console);
     return cli::ExitCode::done;
 }
 

@@ -13,14 +13,15 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
     def do_POST(self):
         name, body = pathlib.Path(self.path).name, self.rfile.read(int(self.headers["Content-Length"]))
+        is_end = name in ("done", "failed")
+        if not is_end:  # before the answer, after which the page posts "done"
+            pathlib.Path(name).write_bytes(body)
         self.send_response(204)
         self.end_headers()
-        if name in ("done", "failed"):
+        if is_end:
             self.server.failed = name == "failed"
             print(body.decode(), end="")
             self.server.shutdown()
-        else:
-            pathlib.Path(name).write_bytes(body)
 
 
 server = http.server.ThreadingHTTPServer(("127.0.0.1", int(sys.argv[1])), Handler)

@@ -274,7 +274,6 @@ TEST_F(Advice, HeightsThatDoNotRepeatGetAWall) {
     EXPECT_NE(wall.err.find("dunes.png: a wall along the border"), std::string::npos) << wall.err;
     const Ran checked = shell(scratch_, "check-normals d.png --require tiles");
     EXPECT_NE(checked.out.find("N307"), std::string::npos) << checked.out;
-    EXPECT_NE(checked.out.find("a wall runs along the border"), std::string::npos) << checked.out;
     for (const char* quiet : {"bake-normals dunes.png -o d.png --bumpiness 30 --wrap clamp --no-sync",
                               "bake-normals dunes.png -o d.png --bumpiness 30 --wrap repeat --no-sync",
                               "bake-normals waves.png -o w.png --bumpiness 30 --no-sync",
@@ -319,7 +318,8 @@ TEST_F(Advice, AnInvertedPictureIsNotMendedInSilence) {
 TEST_F(Advice, JpegThatNobodyChoseIsNamed) {
     const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
     ASSERT_EQ(says("bake-normals bricks.png -o a_n.jpg --bumpiness 3"), "");
-    EXPECT_NE(says("pack-normals a_n.jpg --out-dir o --y-in up --y down").find("JPEG is lossy"), std::string::npos);
+    EXPECT_NE(says("pack-normals a_n.jpg --out-dir o --format rgb8 --y-in up --y down").find("JPEG is lossy"),
+              std::string::npos);
     EXPECT_EQ(says("pack-normals a_n.jpg --out-dir o --y-in up --y down --container jpeg"), "");
     EXPECT_EQ(says("pack-normals a_n.jpg -o b_n.jpg --y-in up --y down"), "");
 }

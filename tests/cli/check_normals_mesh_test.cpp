@@ -25,7 +25,8 @@ TEST_F(CheckNormalsMesh, PrintsSeamsAndTheSpaceThatFits) {
     EXPECT_EQ(ran.code, 1) << ran.out;
     EXPECT_NE(ran.out.find("green points down, or w of the tangents is flipped (12 seam edges: "), std::string::npos)
         << ran.out;
-    EXPECT_NE(ran.out.find("N711-other-tangent-space.png: seams: visible: 12 edges of the mesh, mean "), std::string::npos)
+    EXPECT_NE(ran.out.find("N711-other-tangent-space.png: seams: visible: 12 edges of the mesh, mean "),
+              std::string::npos)
         << ran.out;
     const Ran down = shell(
         scratch_,

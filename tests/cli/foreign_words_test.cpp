@@ -134,7 +134,7 @@ TEST(ForeignWords, NameWordsThatAreAccepted) {
     for (const auto& row : kEncodingNames) encodings.emplace(row.name);
     for (const auto& row : kContainerNames) containers.emplace(row.name);
     for (const Word& row : engine_words()) engines.insert(row.name);
-    const std::set<std::string> tables[] = {encodings, containers, engines, {"up", "down"}};
+    const std::set<std::string> tables[] = {encodings, containers, engines, {"up", "down"}, {"repeat", "clamp"}};
     for (const ForeignWord& row : foreign_words()) {
         const auto* const table = std::find_if(std::begin(tables), std::end(tables), [&](const auto& words) {
             return words.contains(std::string(row.word));

@@ -12,7 +12,7 @@ namespace tex::cli {
 
 class Streams : public testing::Test {
 protected:
-    Streams() { scratch_.add_sample("ramp.png", "a.png"); }
+    Streams() { scratch_.add_sample("bricks.png", "a.png"); }
     Scratch scratch_;
 };
 

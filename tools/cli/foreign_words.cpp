@@ -65,7 +65,6 @@ constexpr ForeignOption kForeignOptions[] = {
     {"--webp", "--container webp"},
     {"--bits --depth --bit-depth", "--format, such as rgb16 or half"},
     {"--opacity --alpha-blend", "--strength"},
-    {"--curvature", "--curvature-out"},
     {"--metric", "the angle in degrees is the measure; --max-mean and --max limit it"},
     {"--fix --autofix", "repair-normals FILE -o FIXED"},
     {"--flip-y --flip-green --invert-y --invert-green --flip-g", "--y-in"},

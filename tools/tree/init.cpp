@@ -140,7 +140,7 @@ public:
         return all;
     }
 
-    // Of all pictures: whoever checks a whole folder checks its colours and heights, too.
+    // All pictures count: whoever checks a whole folder checks its colours and heights, too.
     [[nodiscard]] Baseline baseline(const std::string& path) const {
         Baseline baseline(path);
         for (std::size_t k = 0; k < files_.size(); ++k) {

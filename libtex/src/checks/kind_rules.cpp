@@ -84,8 +84,8 @@ PictureKind check_no_map(const CheckContext& context, Findings& findings) {
     }
     if (check_surface_data(context, findings)) return PictureKind::data;
     const double unit = measure.as(Reading::as_stored).unit;
-    add_share(findings, "N214",
-              evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored), unit);
+    add_share(findings, "N214", evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored),
+              unit);
     return PictureKind::colors;
 }
 

@@ -90,12 +90,13 @@ std::string fitting_layout(const Stored& stored) {
 std::string fitting_layout_text(const Stored& stored) {
     const std::string letters = fitting_layout(stored);
     if (letters.empty()) return {};
-    std::string upper = letters;
-    for (char& letter : upper) letter = static_cast<char>(letter - 'a' + 'A');
-    const bool has_z = letters.size() > 2;
-    return std::string("; ") + upper[0] + (has_z ? ", " : " and ") + upper[1] +
-           (has_z ? std::string(" and ") + upper[2] + " are the x, y and z" : " have the slopes of a surface, as x and y") +
-           (has_z ? " of normals" : "") + " (--swizzle " + letters + ")";
+    const auto name = [&letters](std::size_t k) { return static_cast<char>(letters[k] - 'a' + 'A'); };
+    std::string text = std::string("; ") + name(0);
+    if (letters.size() > 2)
+        text += std::string(", ") + name(1) + " and " + name(2) + " are the x, y and z of normals";
+    else
+        text += std::string(" and ") + name(1) + " have the slopes of a surface, as x and y";
+    return text + " (--swizzle " + letters + ")";
 }
 
 }  // namespace tex::inline v1
