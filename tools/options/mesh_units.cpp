@@ -29,10 +29,17 @@ struct Box {
         }
     }
     void include(const MeshPart& part) {
+        // In floats, because meshes have millions of corners.
+        constexpr float kInfinity = std::numeric_limits<float>::infinity();
+        Float3 least{kInfinity, kInfinity, kInfinity}, most{-kInfinity, -kInfinity, -kInfinity};
         for (const std::uint32_t v : part.indices) {
             const Float3& p = part.positions[v];
-            include({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+            least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
+            most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
         }
+        if (part.indices.empty()) return;
+        for (const Float3& p : {least, most})
+            include({static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     }
     void include(const Box& box, const std::array<double, 12>& to_scene) {
         for (unsigned corner = 0; corner < 8; ++corner) {
