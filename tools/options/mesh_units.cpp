@@ -29,11 +29,13 @@ struct Box {
         }
     }
     void include(const MeshPart& part) {
-        // In floats, because meshes have millions of corners.
+        // A hint needs no more corners than these.
+        constexpr std::size_t kMostCorners = 1 << 17;
+        const std::size_t step = part.indices.size() / kMostCorners + 1;
         constexpr float kInfinity = std::numeric_limits<float>::infinity();
         Float3 least{kInfinity, kInfinity, kInfinity}, most{-kInfinity, -kInfinity, -kInfinity};
-        for (const std::uint32_t v : part.indices) {
-            const Float3& p = part.positions[v];
+        for (std::size_t k = 0; k < part.indices.size(); k += step) {
+            const Float3& p = part.positions[part.indices[k]];
             least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
             most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
         }

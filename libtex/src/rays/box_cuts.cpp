@@ -2,6 +2,12 @@
 
 #include "rays/box_cuts.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <new>
 #include <utility>
 
 namespace tex::inline v1 {
@@ -13,6 +19,28 @@ constexpr std::size_t kMany = 256;
 struct Bin {
     FloatBox box;
     std::uint32_t count = 0;
+};
+
+// The bins of an axis. Most ranges have fewer triangles than there are bins, so that those without any cost nothing.
+class Bins {
+public:
+    void add(int k, const FloatBox& box) {
+        const std::uint32_t bit = 1u << k;
+        if ((used_ & bit) == 0) {
+            used_ |= bit;
+            new (storage_ + static_cast<std::size_t>(k) * sizeof(Bin)) Bin{box, 1};
+            return;
+        }
+        Bin& bin = at(k);
+        bin.box.include(box);
+        ++bin.count;
+    }
+    [[nodiscard]] std::uint32_t used() const { return used_; }  // a bit for each bin that is not empty
+    [[nodiscard]] Bin& at(int k) { return *std::launder(reinterpret_cast<Bin*>(storage_) + k); }
+
+private:
+    alignas(Bin) std::byte storage_[kBins * sizeof(Bin)];
+    std::uint32_t used_ = 0;
 };
 
 // The bin of a place along an axis.
@@ -32,26 +60,28 @@ struct Cut {
 };
 
 // The cheapest cut of these bins, if it is cheaper than `best`. Before and after an empty bin, a cut costs the same.
-void choose_cut(const Bin* bins, int axis, Cut& best) {
+void choose_cut(Bins& bins, int axis, Cut& best) {
+    int used[kBins], last = 0;
+    for (std::uint32_t left = bins.used(); left != 0; left &= left - 1) used[last++] = std::countr_zero(left);
     float right_cost[kBins];
     FloatBox box;
     std::size_t count = 0;
-    for (int k = kBins - 1; k > 0; --k) {
-        if (bins[k].count == 0) continue;
-        box.include(bins[k].box);
-        count += bins[k].count;
-        right_cost[k] = box.area() * static_cast<float>(count);
+    for (int n = last - 1; n > 0; --n) {
+        const Bin& bin = bins.at(used[n]);
+        box.include(bin.box);
+        count += bin.count;
+        right_cost[n] = box.area() * static_cast<float>(count);
     }
     box = {};
     count = 0;
-    for (int k = 0; k < kBins; ++k) {
-        if (bins[k].count == 0) continue;
-        if (count > 0) {
-            const float cost = box.area() * static_cast<float>(count) + right_cost[k];
-            if (cost < best.cost) best = {cost, axis, k};
+    for (int n = 0; n < last; ++n) {
+        const Bin& bin = bins.at(used[n]);
+        if (n > 0) {
+            const float cost = box.area() * static_cast<float>(count) + right_cost[n];
+            if (cost < best.cost) best = {cost, axis, used[n]};
         }
-        box.include(bins[k].box);
-        count += bins[k].count;
+        box.include(bin.box);
+        count += bin.count;
     }
 }
 
@@ -90,13 +120,11 @@ bool cut_along(BoxedTriangle* boxes, const BoxRange& range, const FloatBox& cent
                BoxRange& left, BoxRange& right) {
     const BinScale scales[3] = {
         {centers.low[0], centers.high[0]}, {centers.low[1], centers.high[1]}, {centers.low[2], centers.high[2]}};
-    Bin bins[3][kBins];
+    Bins bins[3];
     for (int axis = first_axis; axis <= last_axis; ++axis) {
         const BinScale scale = scales[axis];
         for (std::size_t k = range.begin; k < range.end; ++k) {
-            Bin& bin = bins[axis][scale.bin(boxes[k].center(axis))];
-            bin.box.include(boxes[k].box);
-            ++bin.count;
+            bins[axis].add(scale.bin(boxes[k].center(axis)), boxes[k].box);
         }
     }
     Cut cut;
@@ -111,7 +139,10 @@ bool cut_along(BoxedTriangle* boxes, const BoxRange& range, const FloatBox& cent
     }
     left = {range.begin, first, {}, range.may_have_copies};
     right = {first, range.end, {}, range.may_have_copies};
-    for (int k = 0; k < kBins; ++k) (k < cut.bin ? left : right).box.include(bins[cut.axis][k].box);
+    for (std::uint32_t used = bins[cut.axis].used(); used != 0; used &= used - 1) {
+        const int k = std::countr_zero(used);
+        (k < cut.bin ? left : right).box.include(bins[cut.axis].at(k).box);
+    }
     return true;
 }
 
