@@ -33,8 +33,8 @@ FILES = {
     "KTX2, astc-4x4": "bake-normals bump.png -o astc-4x4.ktx2 --format astc-4x4 $bake $all",
 }
 
-# Where an engine shows a file: on geometry of its own, or on a glTF model with or without TANGENT. Settings that a
-# recipe asks for are named in the words of the engine.
+# The surfaces on which each engine draws a file: its own geometry, or a glTF model with or without TANGENT. The settings
+# of a recipe are named as in the engine.
 OWN, PLAIN, TANGENT = "", "models/plain.glb", "models/plain-t-map.glb"
 PLACES = {
     "three": [("own geometry", OWN), ("own geometry, repeat.y = -1, normalScale.y = -1", OWN),
@@ -57,8 +57,8 @@ GATE = {
 # Where the picture is mirrored, turned over or turned on purpose, or by the engine's own geometry.
 CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper right", "image, flipY": "lower left",
            "image, rotated by 90 degrees": "upper right"}
-# The only file types that an engine is given, where it is not all. Babylon.js loads its decoder of KTX2, which npm does
-# not have, from a server of its own.
+# The file types that an engine is given, if not all. Babylon.js downloads its decoder of KTX2 from its own server,
+# because npm does not have it.
 TYPES = {"babylon": ("png", "exr", "dds"), "phaser": ("png",), "playcanvas": ("png", "dds", "ktx2")}
 DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament")
 

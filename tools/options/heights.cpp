@@ -224,9 +224,8 @@ void note_implausible(Job& job, std::int64_t texels, HeightChannel channel) {
 
 std::string luma_text(std::int64_t texels) {
     return fmt::format(
-        "R, G and B differ in {} texels: their luma is the height; --channel chooses another, and reads map tiles as "
-        "terrain-rgb or "
-        "terrarium",
+        "R, G and B differ in {} texels: their luma is the height; --channel chooses another, and terrain-rgb or "
+        "terrarium for map tiles",
         texels);
 }
 

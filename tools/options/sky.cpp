@@ -27,7 +27,7 @@ void SkyOptions::add(Command& command, const FileOptions& files) {
                 })
         .preset = fmt::format("{}", options_.directions);
     command
-        .option("--occlusion-distance", "TEXELS", "let what is farther away count less, and nothing beyond, or 0",
+        .option("--occlusion-distance", "TEXELS", "let what hides the sky count less, the farther away it is",
                 [this](const std::string& text) {
                     options_.distance = parse_float(text, range_of(&OcclusionOptions::distance));
                 })

@@ -65,15 +65,15 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     if (const Result<void> opened = targets.open(files, given->planes(), report.extent, report.levels); !opened)
         return opened.error();
     SlopeCollector slopes(steepest_slope(options.pack.encoding), options.slopes);
-    std::optional<UsualSlope> usual;  // once the strength is known
-    BorderSlope border(report.extent);
+    std::optional<UsualSlope> usual;    // once the strength is known
+    std::optional<BorderSlope> border;  // of heights that repeat
     const WatchRows seen = [&](const LevelRows& rows) {
         if (rows.level != 0) return;
         slopes.add(rows.map, 0, rows.height);
         for (int j = 0; j < rows.height; ++j) {
             const VectorRow row{rows.map.x.row(j), rows.map.y.row(j), rows.map.z.row(j)};
             if (usual->wants(rows.first + j)) usual->add(row);
-            border.add(rows.first + j, row);
+            if (border) border->add(rows.first + j, row);
         }
     };
     const HeightCounts before = heights->counts;
@@ -81,6 +81,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     flow.set_rows_together(targets.rows_together());
     const BakedRows baked = add_bake(flow, *heights, file.path(), options, gradient);
     usual.emplace(report.extent, std::max(std::abs(baked.head.bumpiness_x), std::abs(baked.head.bumpiness_y)));
+    if (baked.head.wrap_x == Wrap::repeat || baked.head.wrap_y == Wrap::repeat) border.emplace(report.extent);
     const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first), given->planes()};
     add_levels(flow, given->add_to(flow, *baked.normals), levels, targets, seen);
     if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
@@ -102,7 +103,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     report.on_ground = baked.head.ground.has_value();
     report.usual_slope = usual->slope();
     report.auto_strength = usual->strength_for_one();
-    report.border_ratio = border.ratio();
+    report.border_ratio = border ? border->ratio() : 0.0;
     report.slopes = slopes.range();
     report.steep_texels = slopes.steep_texels();
     return report;
