@@ -26,7 +26,7 @@ gate_packages=(
 nightly_packages=(
     clang-tidy-14 libbenchmark-dev g++-aarch64-linux-gnu qemu-user-static slurmctld slurmd slurm-client munge lintian
     rustc mono-mcs abigail-tools mmdebstrap nasm g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64 wine googletest
-    minisign
+    minisign gdal-bin python3-gdal
 )
 
 # Elsewhere names may differ. Known: Ubuntu has another name for libjpeg-turbo.

@@ -4,7 +4,7 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: alone extremes long scalar commands slurm arm64 tsan
-#                                   tidy fuzz package abi engines platforms portable windows release
+#                                   tidy fuzz package abi readers engines platforms portable windows release
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -171,6 +171,9 @@ use_packages() (
 # The binary interface of libtex.so beside that of the last tag.
 abi() { counted abi tests/abi.sh; }
 
+# What other programs read in files that leave it open, beside what the manual says of them.
+readers() { counted readers /usr/bin/python3 tests/readers.py build/release; }
+
 # Other programs with our files: Blender, Godot, engines of the web, Khronos' validator. Each installs what it needs, if
 # it can.
 engines() {
@@ -247,6 +250,7 @@ step tidy tidy
 step fuzz fuzz
 step package package
 step abi abi
+step readers readers
 step engines engines
 step platforms platforms
 step portable portable

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/run.h"
 #include "options/toml_bounds.h"
@@ -149,6 +150,19 @@ void BuildNormals::find(cli::BuildTree& tree, const cli::FolderVisitor& entered,
         if (std::any_of(tree.work.tasks.begin(), tree.work.tasks.end(), makes)) continue;
         console.warning(fmt::format("{}: line {}: this rule applies to no file", tree.manifest.path,
                                     tree.recipes[k].rule().place.line));
+    }
+    if (const std::vector<std::string>& rest = tree.work.without_rule; !rest.empty()) {
+        const std::size_t shown = build_.dry_run ? rest.size() : std::min<std::size_t>(rest.size(), 2);
+        std::string names;
+        for (std::size_t k = 0; k < shown; ++k) names += (k == 0 ? "" : ", ") + cli::printable(rest[k]);
+        console.warning(fmt::format(
+            "{}: no rule is for {} picture{} named like normal maps or heights{}{}; list under exclude what no rule is "
+            "meant for",
+            tree.manifest.path, rest.size(), rest.size() == 1 ? "" : "s",
+            shown < rest.size() ? ", such as "
+            : rest.size() == 1  ? ", "
+                                : ": ",
+            names));
     }
 }
 

@@ -52,15 +52,15 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
             throw cli::UsageError("--normalize and --keep-length exclude each other");
     });
     command.example("pack-normals bricks_n.png -o bricks.dds --mips all", "DXT5nm with all levels.");
-    command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
+    command.example("pack-normals scene.glb -o fixed.glb --y-in 'measured, else up' --y up",
+                    "A model whose maps may have green down; those that do not show it stay.");
     command.example("pack-normals directx/*.png --out-dir opengl --format rgb8 --y-in down --y up",
                     "Pictures from one convention to the other.");
+    command.example("pack-normals bricks.dds -o bricks_bc5.ktx2 --format bc5", "Another encoding, the same levels.");
     command.example("pack-normals rock_n.png -o rock_pbr.png --layout labpbr --blue rock_ao.png --alpha rock_h.png",
                     "Occlusion and heights beside the normals.");
     command.example("pack-normals model.glb --out-dir out --for unreal --name '{stem}_{material}.{type}'",
                     "Every normal map that the materials of a model use.");
-    command.example("pack-normals scene.glb -o fixed.glb --y-in 'measured, else up' --y up",
-                    "A model whose maps may have green down; those that do not show it stay.");
 }
 
 Result<void> PackNormals::check(const std::vector<cli::Task>& tasks) {

@@ -3,7 +3,6 @@
 #include <tex/mesh.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "fields/field_check.h"
 #include "fields/mesh_fields.h"
+#include "fields/range.h"
 #include "mesh/coverage.h"
 #include "mesh/frames.h"
 #include "rays/found_reach.h"
@@ -91,11 +91,6 @@ Result<void> fill_rest(TransferredMaps& result, std::int64_t width, const Execut
     return visit_holes(result.map.x.view(), Wrap::repeat, Wrap::repeat, execution, span, fill);
 }
 
-std::string plain(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 4).ptr};
-}
-
 // Whether any triangle has.
 bool has_area(const RayGroups& groups) {
     for (const RayGroup& group : groups.all()) {
@@ -113,14 +108,15 @@ bool has_area(const RayGroups& groups) {
 }
 
 Error no_hit(const TangentSpace& low, const RayGroups& groups, bool has_cage, const TransferredMaps& result) {
-    const std::string reach = "rays reach " + plain(result.front) + " in front and " + plain(result.back) + " behind";
+    const std::string reach =
+        "rays reach " + rounded_text(result.front, 4) + " in front and " + rounded_text(result.back, 4) + " behind";
     const double distance = distance_between(low.part, groups);
     if (!has_area(groups)) return {ErrorCode::bad_option, low.file, "no triangle of the high mesh has an area"};
     if (result.diagonal == 0.0)
         return {ErrorCode::bad_option, low.file, "all corners of its triangles are in one place"};
     if (distance > std::max(result.front, result.back)) {
         return {ErrorCode::bad_option, low.file,
-                "no ray hits the high mesh, which is " + plain(distance) + " away, while " + reach +
+                "no ray hits the high mesh, which is " + rounded_text(distance, 4) + " away, while " + reach +
                     ": both must be in the same place and unit"};
     }
     if (result.behind > 0) {

@@ -205,6 +205,15 @@ TEST_F(BlendNormals, ResultsHaveTheBaseSizeAndTheirOwnLevels) {
     EXPECT_EQ(small["format"], "float");
 }
 
+TEST_F(BlendNormals, ADetailThatIsStretchedIsSaidAndTheAdviceKeepsItsShape) {
+    does("blend-normals", {"base.exr", "flat.exr", "-o", "wide.exr", "--extent", "512x256"});
+    const Ran ran = go("blend-normals", {"wide.exr", "detail.exr", "-o", "x.exr", "--tiling", "8"});
+    EXPECT_EQ(ran.code, 0);
+    const std::string advice = "is stretched 2 to 1 on the base of 512x256; a tiling of 8,4 keeps its shape";
+    EXPECT_NE(ran.err.find("detail.exr: " + advice), std::string::npos) << ran.err;
+    does("blend-normals", {"wide.exr", "detail.exr", "-o", "x.exr", "--tiling", "8,4"});
+}
+
 TEST_F(BlendNormals, MisuseIsRefused) {
     refuses({"base.exr", "-o", "x.dds"}, "no detail: give BASE DETAIL... -o FILE");
     refuses({"base.exr", "detail.exr", "--out-dir", "out"}, "no detail");

@@ -165,6 +165,16 @@ TEST_F(CompareNormals, RefusesWhatCannotBeCompared) {
     EXPECT_NE(sizes.err.find("64x64"), std::string::npos);
 }
 
+// What is a smaller level of the other map is compared by the command that the error names.
+TEST_F(CompareNormals, AdvisesHowMapsOfDifferentSizesAreCompared) {
+    ASSERT_EQ(run(scratch_, "pack-normals", {"up.exr", "-o", "half.exr", "--max-size", "64"}).code, 0);
+    const Ran ran = compare({"half.exr", "up.exr"});
+    const std::string advice = "; pack-normals up.exr --max-size 64 -o SMALL makes a map of that extent\n";
+    EXPECT_NE(ran.err.find(advice), std::string::npos) << ran.err;
+    ASSERT_EQ(run(scratch_, "pack-normals", {"up.exr", "--max-size", "64", "-o", "small.exr"}).code, 0);
+    EXPECT_EQ(compare({"half.exr", "small.exr"}).code, 0);
+}
+
 // Two bakes that agree on the charts and differ between them.
 TEST_F(CompareNormals, PaddingDoesNotCountOnAMesh) {
     scratch_.write("half.obj",

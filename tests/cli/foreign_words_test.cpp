@@ -127,6 +127,8 @@ TEST(ForeignOptions, AreAnswered) {
     says("mip-normals", "--srgb", "--srgb; normals are not colours, and are never converted\n");
     says("bake-normals", "--srgb", "--srgb; here it is --color-space, of heights\n");
     says("compare-normals", "--samples", "--samples\n");
+    const Ran tiles = run(scratch, "bake-normals", {"a.png", "--heights", "terrain-rgb"});
+    EXPECT_NE(tiles.err.find("; --channel terrain-rgb reads it"), std::string::npos) << tiles.err;
 }
 
 TEST(ForeignWords, NameWordsThatAreAccepted) {

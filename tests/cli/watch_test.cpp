@@ -277,6 +277,7 @@ TEST_F(BuildNormalsWatch, AMeshThatHasChangedIsReadAgain) {
     scratch_.write("normals.toml", R"(version = 1
 [[rule]]
 match = "art/n.png"
+exclude = "art/*_h.png"
 name = "out/{stem}.exr"
 steps = [ { convert = { mesh = "sheet.obj", to = "object" } } ]
 )");
@@ -303,6 +304,7 @@ TEST_F(BuildNormalsWatch, AHighMeshThatHasChangedIsTransferredAgain) {
     scratch_.write("normals.toml", R"(version = 1
 [[rule]]
 match = "art/*_low.obj"
+exclude = "art/*_h.png"
 name = "out/{stem:-_low}_n.<UDIM>.png"
 steps = [ { transfer = { high = "sculpts/{stem:-_low}_high.obj", extent = "32", height-out = "out/h.<UDIM>.exr" } } ]
 )");

@@ -217,6 +217,15 @@ void Converter::note_output(Job& job, const OutputFacts& facts, const std::strin
                             chain->mip.max_side, facts.extent.width, facts.extent.height));
         }
     }
+    // Nothing says that pictures are wanted, and this command can write the model.
+    if (job.task.model && rules().writes_models && files.output.empty() && files.name.empty() && !output.container &&
+        !output.format && output.engines.empty()) {
+        const std::string extension = std::filesystem::path(job.task.input).extension().string();
+        repeated_.add(job, job.task.input,
+                      fmt::format("its normal maps are written as pictures; --name '{{stem}}{}' writes the model with "
+                                  "them (--container png: without this warning)",
+                                  extension));
+    }
     // Blocks of ASTC may reach beyond the border. check-normals finds the same (N106).
     const bool needs_whole_blocks =
         has_blocks && block == Extent{4, 4} && !name_of(kEncodingNames, facts.encoding).starts_with("astc");

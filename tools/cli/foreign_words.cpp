@@ -171,6 +171,9 @@ std::string foreign_word_answer(std::string_view name, const std::vector<std::st
     for (const ForeignWord& row : kForeignWords) {
         if (has_name(row.names, small) && known(row.word)) return fmt::format("; here it is {}", row.word);
     }
+    // What the channels hold, and not what its numbers are.
+    if (known("stored") && has_name("terrain-rgb terrarium", small))
+        return fmt::format("; --channel {} reads it", small);
     return known("dxt5nm") || known("png") ? unwritten_type_answer(small) : std::string();
 }
 

@@ -211,7 +211,8 @@ Error HeightReader::with_remedy(const Error& error) {
 namespace {
 
 constexpr const char* kStoredText =
-    "heights are the numbers that the file stores, as it says; --heights unit makes their whole range 0 to 1";
+    "by its type and tags the file holds quantities, such as metres, and they are used as they are stored; --heights "
+    "unit reads the whole range of the type as 0 to 1";
 
 void note_implausible(Job& job, std::int64_t texels, HeightChannel channel) {
     const auto name = name_of(kHeightChannelNames, channel);

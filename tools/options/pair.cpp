@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
+#include "cli/text.h"
+
 namespace tex::cli {
 
 void PairOptions::add(Command& command) {
@@ -114,8 +116,18 @@ Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, cons
     }
     const Extent p = a.levels[level].extent(), q = b.levels[level].extent();
     if (p == q) return {};
+    const bool a_is_larger = p.width > q.width;
+    const Extent &large = a_is_larger ? p : q, &small = a_is_larger ? q : p;
+    std::string advice;
+    for (int halvings = 1; level_extent(large, halvings).width >= small.width && large.width > small.width;
+         ++halvings) {
+        if (level_extent(large, halvings) != small) continue;
+        advice = fmt::format("; pack-normals {} --max-size {} -o SMALL makes a map of that extent",
+                             shell_word(names[a_is_larger ? 0 : 1]), std::max(small.width, small.height));
+        break;
+    }
     return Error{ErrorCode::bad_option, names[1],
-                 fmt::format("is {}x{} texels, {} is {}x{}", q.width, q.height, names[0], p.width, p.height)};
+                 fmt::format("is {}x{} texels, {} is {}x{}{}", q.width, q.height, names[0], p.width, p.height, advice)};
 }
 
 std::vector<std::string> PairOptions::violations(int level, const AngularError& error) const {

@@ -28,6 +28,8 @@ struct FileSearch {
     std::function<bool(const std::string& folder)> skip;
     // Called with each folder before it is read; may be empty.
     FolderVisitor entered;
+    // Called with each file in such a folder that matches no pattern; may be empty.
+    std::function<void(const std::string& path)> passed_over = {};
     // Called for each folder that cannot be read.
     std::function<void(const std::string& folder, const std::string& reason)> unreadable;
 };

@@ -60,6 +60,7 @@ private:
         const bool may_be_folder = entry.d_type == DT_DIR || entry.d_type == DT_LNK || entry.d_type == DT_UNKNOWN;
         const bool matches = entry.d_type != DT_DIR && any([&](const Glob& glob) { return glob.matches(path); });
         const bool reaches = may_be_folder && any([&](const Glob& glob) { return glob.reaches(path + "/"); });
+        if (!matches && entry.d_type != DT_DIR && search_.passed_over) search_.passed_over(path);
         if (!matches && !reaches) return;
         struct stat status {};
         if (entry.d_type == DT_DIR) {

@@ -64,6 +64,7 @@ private:
         bool is_folder = (entry.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0;
         const bool matches = (!is_folder || is_link) && any([&](const Glob& glob) { return glob.matches(path); });
         const bool reaches = (is_folder || is_link) && any([&](const Glob& glob) { return glob.reaches(path + "/"); });
+        if (!matches && !is_folder && search_.passed_over) search_.passed_over(path);
         if (!matches && !reaches) return;
         std::int64_t size = std::int64_t{entry.nFileSizeHigh} << 32 | entry.nFileSizeLow;
         if (is_link) {

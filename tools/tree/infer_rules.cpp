@@ -16,6 +16,12 @@
 namespace tex::cli {
 namespace {
 
+// The ends of names in lower case, without what separates them.
+constexpr std::string_view kNormalWords[] = {"n",       "nm",        "nrm",  "nrml", "norm",     "normal",
+                                             "normals", "normalmap", "nmap", "nor",  "normalgl", "normaldx"};
+constexpr std::string_view kHeightWords[] = {"h",    "height", "heights",      "heightmap", "hmap",
+                                             "disp", "dem",    "displacement", "bump",      "elevation"};
+
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_lower(char c) { return c >= 'a' && c <= 'z'; }
 
@@ -152,6 +158,17 @@ std::string name_end(const std::string& path) {
 std::string name_beginning(const std::string& path) {
     const std::string stem = stem_of(path);
     return folder_of(path) + stem.substr(0, stem.size() - name_end(path).size());
+}
+
+NamedAs named_as(const std::string& path) {
+    std::string end = lower_case(name_end(path));
+    end.erase(0, std::min(end.find_first_not_of("_-. "), end.size()));
+    if (end.empty()) end = lower_case(stem_of(path));
+    const auto is_one_of = [&](const auto& words) {
+        return std::find(std::begin(words), std::end(words), end) != std::end(words);
+    };
+    if (is_one_of(kNormalWords)) return NamedAs::normals;
+    return is_one_of(kHeightWords) ? NamedAs::heights : NamedAs::other;
 }
 
 std::vector<InferredRule> infer_rules(const std::vector<SettingsOfFile>& files) {

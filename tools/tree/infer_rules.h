@@ -36,4 +36,8 @@ struct InferredRule {
 // The path of the file without name_end() and extension: what maps of one material share.
 [[nodiscard]] std::string name_beginning(const std::string& path);
 
+// What a file's name says that it holds: "rock_Normal.tga", "rock-nrm.png", "heightmap.png".
+enum class NamedAs { other, normals, heights };
+[[nodiscard]] NamedAs named_as(const std::string& path);
+
 }  // namespace tex::cli

@@ -39,10 +39,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kBaselineName = "normals-baseline.json";
 
-// The ends of names of height maps, in lower case, without what separates them. Grey of 8 bits alone shows nothing.
-constexpr std::string_view kHeightWords[] = {"h",    "height", "heights",      "heightmap", "hmap",
-                                             "disp", "dem",    "displacement", "bump",      "elevation"};
-
 // A path below the root as a TOML string.
 std::string quoted(const std::string& text) { return Json(text).dump(); }
 
@@ -51,13 +47,6 @@ std::string list_of(const std::vector<std::string>& patterns) {
     std::string text = "[";
     for (const std::string& pattern : patterns) text += fmt::format("\n  {},", quoted(pattern));
     return text + "\n]";
-}
-
-bool is_called_heights(const std::string& path) {
-    std::string end = lower_case(name_end(path));
-    end.erase(0, std::min(end.find_first_not_of("_-. "), end.size()));
-    if (end.empty()) end = lower_case(fs::path(path).stem().string());
-    return std::find(std::begin(kHeightWords), std::end(kHeightWords), end) != std::end(kHeightWords);
 }
 
 bool has_error(const CheckReport& report) {
@@ -203,7 +192,7 @@ private:
         } else if (report.kind == PictureKind::object_space) {
             why_not_[k] = "normals in object space, which convert-normals turns into tangent space with the mesh";
         } else if (report.kind == PictureKind::heights ||
-                   (report.kind == PictureKind::grey && is_called_heights(file.path))) {
+                   (report.kind == PictureKind::grey && named_as(file.path) == NamedAs::heights)) {
             if (materials.find(name_beginning(file.path)) == materials.end()) {
                 file.settings = kBakeStep;
                 return;

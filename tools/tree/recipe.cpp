@@ -119,9 +119,10 @@ bool Recipe::matches(const std::string& input) const {
     return std::any_of(match_.begin(), end, matches) || std::any_of(grids_.begin(), grids_.end(), is_tile);
 }
 
-bool Recipe::takes(const std::string& input) const {
-    const auto excludes = [&](const Glob& glob) { return glob.matches(input); };
-    return matches(input) && std::none_of(exclude_.begin(), exclude_.end(), excludes);
+bool Recipe::takes(const std::string& input) const { return matches(input) && !excludes(input); }
+
+bool Recipe::excludes(const std::string& input) const {
+    return std::any_of(exclude_.begin(), exclude_.end(), [&](const Glob& glob) { return glob.matches(input); });
 }
 
 void Recipe::check_tiles(const ReadyCommand& first) const {

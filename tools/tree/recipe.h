@@ -88,6 +88,7 @@ public:
     [[nodiscard]] const RuleSettings& rule() const { return rule_; }
     [[nodiscard]] const std::vector<Glob>& match() const { return match_; }
     [[nodiscard]] bool takes(const std::string& input) const;
+    [[nodiscard]] bool excludes(const std::string& input) const;
     // Throws a UsageError with the place of the rule.
     [[noreturn]] void fail(const std::string& reason) const { fail_at(manifest_.path, rule_.place, reason); }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include <fmt/format.h>
+#include <tex/file.h>
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -15,6 +16,7 @@
 #include "tasks/file_table.h"
 #include "tasks/name_pattern.h"
 #include "tree/beside.h"
+#include "tree/infer_rules.h"
 #include "tree/state.h"
 
 namespace tex::cli {
@@ -27,6 +29,13 @@ constexpr const char* kSame = "the same output";
 std::string in_lower_case(std::string text) {
     for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return text;
+}
+
+// Textures are made from something, and have names like its own.
+bool may_need_rule(const std::string& path) {
+    const auto container = container_of(path);
+    return named_as(path) != NamedAs::other &&
+           (is_height_file(path) || (is_picture(path) && !(container && can_hold_blocks(*container))));
 }
 
 // The folders of outputs, each with "/" at its end.
@@ -54,6 +63,7 @@ public:
         find_inputs();
         find_collisions();
         find_needs();
+        find_without_rule();
         return std::move(work_);
     }
 
@@ -64,12 +74,14 @@ private:
     std::vector<std::string> files_of(std::size_t index, std::size_t output);
     void refuse(std::size_t index, std::size_t earlier, const char* what, const std::string& output);
     void find_needs();
+    void find_without_rule();
     void check_cycle(std::size_t recipe, std::vector<std::size_t>& open);
 
     const std::vector<Recipe>& recipes_;
     const std::string& root_;
     const FolderVisitor& entered_;
     WorkList work_;
+    std::vector<std::string> passed_over_;  // pictures with such names that no pattern matches
     FilesBeside beside_{root_};
     std::unordered_map<std::string, std::size_t> makers_;  // the task that makes an output
     std::vector<std::set<std::size_t>> needed_;            // the recipes that each recipe needs
@@ -104,6 +116,9 @@ void Lister::find_inputs() {
         return std::find(folders.begin(), folders.end(), folder) != folders.end();
     };
     search.entered = entered_;
+    search.passed_over = [&](const std::string& path) {
+        if (may_need_rule(path)) passed_over_.push_back(path);
+    };
     search.unreadable = [&](const std::string& folder, const std::string& reason) {
         work_.unreadable.push_back(folder + ": " + reason);
     };
@@ -199,6 +214,27 @@ void Lister::find_needs() {
         check_cycle(k, open);
     }
     for (BuildTask& task : work_.tasks) task.needs = needs[task.recipe];
+}
+
+void Lister::find_without_rule() {
+    std::set<std::string> materials;  // that have a normal map, or heights that become one
+    for (const BuildTask& task : work_.tasks) materials.insert(name_beginning(task.input));
+    for (const std::string& path : passed_over_) {
+        if (named_as(path) == NamedAs::normals) materials.insert(name_beginning(path));
+    }
+    const auto is_known = [&](const std::string& path) {
+        return makers_.contains(path) || std::any_of(recipes_.begin(), recipes_.end(), [&](const Recipe& recipe) {
+                   const std::vector<std::string>& files = recipe.files();
+                   return recipe.excludes(path) || std::any_of(files.begin(), files.end(), [&](const auto& file) {
+                              return slashed(fs::path(file).lexically_normal()) == path;
+                          });
+               });
+    };
+    for (const std::string& path : passed_over_) {
+        const bool is_answered = named_as(path) == NamedAs::heights && materials.contains(name_beginning(path));
+        if (!is_answered && !is_known(path)) work_.without_rule.push_back(path);
+    }
+    std::sort(work_.without_rule.begin(), work_.without_rule.end());
 }
 
 void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {

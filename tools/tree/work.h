@@ -26,11 +26,15 @@ struct BuildTask {
 struct WorkList {
     std::vector<BuildTask> tasks;         // sorted by input
     std::vector<std::string> unreadable;  // folders, each with the reason
+    // Pictures that are named like normal maps, or like heights without normals, and that no rule is for, sorted.
+    std::vector<std::string> without_rule;
 };
 
 // Lists what the recipes make. Of several recipes that match a file, the first one makes it. Files in out-dir are no
 // inputs, unless a pattern begins with its name. Two inputs of one recipe whose outputs are one file, or have names
 // that differ only in the case of letters, are refused, and the others are made.
+//
+// Pictures that a rule excludes, makes or reads need no rule. Only folders that a pattern reaches are looked at.
 //
 // Calls `entered`, unless it is empty, with each folder before it is read.
 //

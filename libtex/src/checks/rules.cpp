@@ -263,7 +263,7 @@ constexpr Rule kRules[] = {
     {"N404", "y-contradicts-file", convention, error, true, "Green points the other way than the file declares.",
      "The file's own mark of y (KTX2, EXR) is not what the texels show. Either the mark is wrong, or red is mirrored; "
      "N401 explains why the slopes do not show which.",
-     "pack-normals FILE --keep-length --y-in MEASURED --y MEASURED --format SAME -o FIXED", ""},
+     "pack-normals FILE --keep-length --y-in MEASURED --format SAME -o FIXED", ""},
 
     // -- the smaller levels -------------------------------------------------------------------------------------
     {"N501", "level-not-unit", mips, warning, true, "Levels were not renormalised.",

@@ -45,6 +45,12 @@ template <class T>
     return (range.least_too ? compared >= least : compared > least) && compared <= greatest;
 }
 
+// At most this many digits, without zeros at the end: "0.3333".
+inline std::string rounded_text(double value, int digits) {
+    char buffer[32];
+    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, digits).ptr};
+}
+
 // The shortest text, without the padding of exponents: "1e6".
 inline std::string number_text(double value) {
     char buffer[32];

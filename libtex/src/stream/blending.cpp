@@ -2,8 +2,11 @@
 
 #include "stream/blending.h"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
+#include "fields/range.h"
 #include "rows/extra_rows.h"
 #include "stream/normal_source.h"
 #include "stream/placed_map.h"
@@ -14,6 +17,19 @@ namespace {
 // Whether the rows of a detail can keep in step, as far as that can be decided without its extent.
 bool lies_flat(const Layer& layer) {
     return layer.tiling_x == 1.0f && layer.tiling_y == 1.0f && layer.offset_y == 0.0f && layer.rotation == 0.0f;
+}
+
+// What to say of a detail whose shape the base does not have: one number of repeats for both axes stretches it. Two
+// that differ are a choice. Empty if it is not visible.
+std::string stretch_text(const Layer& layer, const Extent& detail, const Extent& base) {
+    const double tiling_y = static_cast<double>(layer.tiling_x) * base.height * detail.width /
+                            (static_cast<double>(base.width) * detail.height);
+    const double stretch = tiling_y / layer.tiling_x;
+    constexpr double kVisible = 1.05;
+    if (layer.tiling_x != layer.tiling_y || (stretch < kVisible && stretch > 1.0 / kVisible)) return {};
+    return "is stretched " + rounded_text(std::max(stretch, 1.0 / stretch), 3) + " to 1 on the base of " +
+           std::to_string(base.width) + "x" + std::to_string(base.height) + "; a tiling of " +
+           rounded_text(layer.tiling_x, 4) + "," + rounded_text(tiling_y, 4) + " keeps its shape";
 }
 
 }  // namespace
@@ -70,11 +86,17 @@ Result<void> Blending::open_detail(Input& input, const LayerFile& layer, const L
 Result<void> Blending::open(const Execution& execution) {
     const Execution silent = execution.quiet();
     if (Result<void> opened = open_base(silent); !opened) return opened;
+    const Extent base = base_.step ? base_.map().extent(0) : base_.chain.levels.front().extent();
     for (const LayerFile& layer : options_.layers) {
         if (execution.progress && !execution.progress(0.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         Layer& placed = layers_.emplace_back(layer.layer());
         Input& input = inputs_.emplace_back(layer.input, layer.source);
         if (Result<void> opened = open_detail(input, layer, placed, silent); !opened) return opened;
+        const Extent detail = input.shared ? input.shared->chain.levels.front().extent()
+                              : input.step ? input.map().extent(0)
+                                           : input.chain.levels.front().extent();
+        std::string stretched = stretch_text(placed, detail, base);
+        if (!stretched.empty()) input.info.remarks.push_back(std::move(stretched));
         if (!layer.mask) continue;
         Result<Plane<float>> mask = layer.mask();
         if (!mask) return mask.error();
