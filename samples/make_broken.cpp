@@ -461,12 +461,18 @@ void Maker::models() {
     put("N802-used-as-color", sheet, normal + R"(,"pbrMetallicRoughness":{"baseColorTexture":{"index":0}})");
     put("N803-uv-set-missing", sheet, R"("name":"stone","normalTexture":{"index":0,"texCoord":1})");
     put("N804-scale-not-positive", sheet, R"("name":"stone","normalTexture":{"index":0,"scale":-1})");
-    put("N805-mirrored-and-double-sided", two_sheets(true), normal + R"(,"doubleSided":true)");
+    put("N805-double-sided-tangents", two_sheets(true), normal + R"(,"doubleSided":true)");
     put("N806-data-in-normal-slot", sheet, normal + R"(,"occlusionTexture":{"index":0})");
     MeshPart bare = sheet;
     bare.normals.clear();
     bare.tangents.clear();
     put("N807-mesh-not-examined", bare, normal);
+    MeshPart plain = sheet;
+    plain.tangents.clear();
+    const std::string turned = R"("extensions":{"KHR_texture_transform":{"rotation":1.5707963}})";
+    model("N808-drawn-wrongly-by-engine", plain,
+          {R"("name":"stone","normalTexture":{"index":0,)" + turned + "}", R"("source":0)", image, "image/png",
+           "KHR_texture_transform"});
 }
 
 }  // namespace

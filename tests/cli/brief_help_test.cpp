@@ -71,7 +71,7 @@ protected:
             scratch_.add_sample("crate_low.glb", mesh);
         for (const char* mesh : {"rock_high.glb", "high.glb"}) scratch_.add_sample("crate_high.glb", mesh);
         for (const char* model : {"model.glb", "scene.glb", "cat.glb", "cat_low.glb"})
-            scratch_.add_sample("broken/N805-mirrored-and-double-sided.glb", model);
+            scratch_.add_sample("broken/N805-double-sided-tangents.glb", model);
         const std::string manifest =
             "version = 1\n[[rule]]\nmatch = \"*_h.png\"\nname = \"{stem:-_h}_n.dds\"\n"
             "steps = [ { bake = {} } ]\n";

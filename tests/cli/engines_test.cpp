@@ -32,7 +32,8 @@ constexpr WantedFile kWanted[] = {
     {"phaser", "rock.png", "rgb8", "up", 1},        {"blender", "rock.png", "rgb16", "up", 1},
     {"bevy", "rock.ktx2", "bc5", "up", 10},         {"o3de", "rock_normal.png", "rgb8", "down", 1},
     {"android", "rock.ktx2", "eac-rg11", "up", 10}, {"ios", "rock.ktx2", "eac-rg11", "up", 10},
-    {"gltf-ktx2", "rock.ktx2", "uastc", "up", 10},
+    {"gltf-ktx2", "rock.ktx2", "uastc", "up", 10},  {"cesium", "rock.png", "rgb8", "up", 1},
+    {"filament", "rock.png", "rgb8", "up", 1},
 };
 
 std::string all_engines() {
@@ -148,7 +149,7 @@ TEST_F(Engines, NamesSeparateTheFilesOfSeveralEngines) {
 TEST_F(Engines, MistakesSayWhatIsWrong) {
     fails("bake-normals rock.png -o x.png --for unitty",
           "--for: must be one of unity, unreal, godot, gltf, gltf-ktx2, three, three-packed, babylon, playcanvas, "
-          "phaser, blender, bevy, o3de, android, ios, not 'unitty'; did you mean unity?");
+          "cesium, filament, phaser, blender, bevy, o3de, android, ios, not 'unitty'; did you mean unity?");
     fails("bake-normals rock.png -o x.png --for unity,unity", "unity is named twice");
     fails("bake-normals rock.png -o x.png --for unity,list", "not 'list'");
     fails("bake-normals rock.png -o x.png --for unity,unreal", "-o takes one engine of --for, 2 are given");
@@ -229,6 +230,10 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
          "does not read normals from astc-8x6-unorm, ra but from bc5, eac-rg11, rg8, rgba8");
     says("three-packed", "out/three/rock.png", "three-packed does not read png but ktx2");
     says("three", "out/three-packed/rock.ktx2", "three does not read normals from bc5-unorm, rg");
+    does("bake-normals rock.png -o rgb.ktx2 --format rgb8; bake-normals rock.png -o rgba.ktx2 --format rgba8");
+    says("three", "rgb.ktx2",
+         "three does not read normals from rgb8-unorm, rgb but from rgba8, rgba16f, rgba32f, bc7, uastc");
+    EXPECT_EQ(shell(scratch_, "check-normals --for three rgba.ktx2").code, 0);
     // three.js 0.187 draws the file for bevy as it must (tests/engines).
     EXPECT_EQ(scratch_.read("out/three-packed/rock.ktx2"), scratch_.read("out/bevy/rock.ktx2"));
     // Engines treat floats as other pictures (three.js 0.187 draws an EXR file of vectors flat and black).
@@ -246,7 +251,10 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     does("bake-normals rock.png -o unity.dds");
     EXPECT_EQ(shell(scratch_, "check-normals --for unity unity.dds").code, 0);
     EXPECT_EQ(shell(scratch_, "check-normals --for gltf unity.dds --disable N113").code, 0);
-    fails("check-normals rock.png --for unity,bevy #", "a file is checked for one engine");
+    fails("check-normals rock.png --for unity,unreal #", "unity and unreal read green the other way round");
+    const Ran both = shell(scratch_, "check-normals --for unity,gltf out/bevy/rock.ktx2");
+    EXPECT_NE(both.out.find("unity does not read ktx2"), std::string::npos) << both.out;
+    EXPECT_NE(both.out.find("gltf does not read ktx2"), std::string::npos) << both.out;
     fails("check-normals rock.png --for list #", "must be one of unity");
 }
 
@@ -254,7 +262,7 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
 TEST(EnginesPage, EveryCommandOfTheRecipesRuns) {
     const Scratch scratch;
     scratch.add_sample("bricks.png", "bricks.png");
-    scratch.add_sample("broken/N805-mirrored-and-double-sided.glb", "scene.glb");
+    scratch.add_sample("broken/N805-double-sided-tangents.glb", "scene.glb");
     std::ifstream page(TEX_BINARY_DIR "/man/normal-maps-engines.7");
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     ASSERT_NE(text, "");

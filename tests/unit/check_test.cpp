@@ -169,7 +169,7 @@ TEST(Check, AnEngineNeedsItsFileTypeFormatAndLevels) {
     const Texture texture = map_texture();
     const auto message = [&](const std::string& file, const EngineNeeds& needs) {
         CheckOptions options;
-        options.require.engine = needs;
+        options.require.engines = {needs};
         const auto report = check(file, texture, options);
         EXPECT_TRUE(report);
         if (report->findings.empty()) return std::string();

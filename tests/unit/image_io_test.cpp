@@ -247,6 +247,13 @@ TEST_F(ImageIoFiles, RefusesWhatIsNoPicture) {
         EXPECT_EQ(image.error().code, ErrorCode::bad_data);
         EXPECT_EQ(image.error().reason, "not a picture, or of a type that is not supported");
     }
+    const auto unread = [&](const std::string& bytes) { return read_image(write("a.png", bytes)).error(); };
+    const std::string four(4, '\0');
+    EXPECT_EQ(unread(four + "ftypavif").code, ErrorCode::unsupported);
+    EXPECT_EQ(unread(four + "ftypavif").reason,
+              "AVIF is not supported; \"avifdec\" makes PNG of it, with the losses that it has");
+    EXPECT_EQ(unread(four + "ftypheic").reason.substr(0, 4), "HEIF");
+    EXPECT_EQ(unread("\xff\x0a" + four).reason.substr(0, 7), "JPEG XL");
     EXPECT_EQ(read_image(write("a.ktx", "\xabKTX 11\xbb\r\n\x1a\n")).error().reason,
               "truncated: the KTX header is not complete");
     EXPECT_EQ(read_image(write("empty.png", "")).error().reason, "is empty");

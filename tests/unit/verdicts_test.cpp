@@ -118,6 +118,24 @@ TEST(Verdicts, VectorsThatAreAllTooShortHoldNoZFromZero) {
     EXPECT_FALSE(found.contains("N221"));
 }
 
+// What contrast and sharpening do: averages never make vectors longer.
+TEST(Verdicts, VectorsThatAreTooLongNameTheirCause) {
+    const auto says = [](int percent) {
+        const auto scaled = [percent](int i, int j) {
+            std::array<int, 4> c = wave(i, j);
+            for (std::size_t k = 0; k < 3; ++k) c[k] = std::clamp(128 + (c[k] - 128) * percent / 100, 0, 255);
+            return c;
+        };
+        const auto report = check("map", reference::texture_of(picture(128, 3, scaled)));
+        std::string text;
+        for (const Finding& finding : report->findings) text += finding.message;
+        return text;
+    };
+    EXPECT_NE(says(125).find("contrast, levels and sharpening"), std::string::npos) << says(125);
+    EXPECT_EQ(says(85).find("contrast"), std::string::npos) << says(85);
+    EXPECT_EQ(says(100), "");
+}
+
 TEST(Verdicts, GreyWithAlphaIsNoLayoutOfNormals) {
     EXPECT_EQ(ids(picture(64, 4,
                           [](int i, int j) {

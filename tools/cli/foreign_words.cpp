@@ -120,6 +120,8 @@ constexpr ForeignWord kForeignWords[] = {
     {"ktx", "ktx2", false},
     {"ue ue4 ue5 unreal4 unreal5", "unreal", false},
     {"threejs three.js", "three", false},
+    {"model-viewer modelviewer", "three", false},
+    {"cesiumjs", "cesium", false},
 };
 
 constexpr UnwrittenType kUnwrittenTypes[] = {

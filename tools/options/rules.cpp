@@ -46,12 +46,16 @@ void RuleOptions::add(Command& command) {
                 })
         .often(1, "demand format=bc5, mips=full, y=up ... of every file")
         .repeatable = true;
-    Row& row = command.option("--for", "ENGINE", "demand what an engine reads, and its direction of green",
-                              [this](const std::string& text) {
-                                  const auto chosen = parse_engines(text);
-                                  if (chosen.size() != 1) throw UsageError("a file is checked for one engine");
-                                  engine_ = chosen.front();
-                              });
+    Row& row = command.option(
+        "--for", "ENGINE[,ENGINE]", "demand what engines read, and their direction of green",
+        [this](const std::string& text) {
+            engines_ = parse_engines(text);
+            for (const Engine* const engine : engines_) {
+                if (engine->y != engines_.front()->y)
+                    throw UsageError(fmt::format("{} and {} read green the other way round: check a file for one",
+                                                 engines_.front()->name, engine->name));
+            }
+        });
     row.often(1, "demand what an engine reads: unity, unreal, godot ...").words = engine_words();
     row.words.pop_back();  // list
     row.completes = Completes::words;
@@ -109,9 +113,9 @@ Demands RuleOptions::merged(const CheckSettings& settings, const Command& comman
     Demands demands{settings.options, settings.fail_on.value_or(least_failing_)};
     CheckOptions& checks = demands.checks;
     for (const std::string& text : required_) require(checks.require, text);
-    if (engine_ != nullptr) {
-        checks.require.engine = needs_of(*engine_);
-        if (!checks.require.y) checks.require.y = engine_->y;
+    for (const Engine* const engine : engines_) {
+        checks.require.engines.push_back(needs_of(*engine));
+        if (!checks.require.y) checks.require.y = engine->y;
     }
     checks.any_length = checks.any_length || length_in_;
     if (swizzle_) checks.swizzle = *swizzle_;

@@ -55,9 +55,9 @@ private:
     [[nodiscard]] Result<void> merge_config(const Command& command);
     [[nodiscard]] Demands merged(const CheckSettings& settings, const Command& command) const;
 
-    CheckOptions given_;                 // from the command line, without `require`
-    std::vector<std::string> required_;  // --require
-    const Engine* engine_ = nullptr;     // --for
+    CheckOptions given_;                  // from the command line, without `require`
+    std::vector<std::string> required_;   // --require
+    std::vector<const Engine*> engines_;  // --for
     std::optional<LengthIn> length_in_;
     std::optional<std::optional<Swizzle>> swizzle_;  // --swizzle; of "auto", nothing
     std::string config_, height_file_;               // paths, or empty

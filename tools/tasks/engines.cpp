@@ -33,12 +33,17 @@ constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 // KTX2Loader's formats without Basis Universal; the renderers rebuild z of those of two channels.
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
-constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc7, uastc};
+constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f};
+// FORMAT_MAP in KTX2Loader.js has no formats of three channels, and none of 16 bits that are normalised.
+constexpr Encoding kThreeKtx2[] = {rgba8, rgba16f, rgba32f, bc7, uastc};
 // Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal.
 constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga};
 // PlayCanvas takes x from A of every texture of BC3, and z from B of others; its loader of KTX2 is for Basis Universal.
 constexpr Container kPlayCanvasTypes[] = {png, jpeg, webp, dds};
 constexpr Encoding kPlayCanvasEncodings[] = {rgb8, rgba8, rgb16, rgba16, dxt5nm};
+// Models alone.
+constexpr Container kModelTypes[] = {png, jpeg, ktx2};
+constexpr Encoding kModelEncodings[] = {rgb8, rgba8, rgb16, rgba16, uastc};
 constexpr Container kPhaserTypes[] = {png, jpeg, webp};
 constexpr Container kBevyTypes[] = {ktx2, dds, png, tiff, tga, bmp, jpeg, exr};
 constexpr Encoding kBevyEncodings[] = {bc5,  eac_rg11, rg8,    rg16,    rgb8,    rgba8, rgb16,
@@ -82,7 +87,7 @@ constexpr Engine kEngines[] = {
     {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
-     kThreeTypes, kThreeEncodings, RoughnessUse::green},
+     kThreeTypes, kThreeEncodings, RoughnessUse::green, kThreeKtx2},
     // Drawn by tests/engines, which shows where the picture lies upside down. isPackedRGFormat() in WebGLPrograms.js:
     // RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
     // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
@@ -102,6 +107,15 @@ constexpr Engine kEngines[] = {
      "PlayCanvas reads x, y and z of PNG from R, G and B, builds the levels and expects green up. With --format dxt5nm "
      "it reads DDS, too.",
      kPlayCanvasTypes, kPlayCanvasEncodings},
+    // Drawn by tests/engines, models alone: they read what the core of glTF allows.
+    {"cesium", png, rgb8, YAxis::up, false, "",
+     "Cesium reads the pictures of glTF models, x, y and z from R, G and B with green up. It needs TANGENT in models "
+     "whose UVs are mirrored.",
+     kModelTypes, kModelEncodings, RoughnessUse::green},
+    {"filament", png, rgb8, YAxis::up, false, "",
+     "filament reads the pictures of glTF models, x, y and z from R, G and B with green up. It needs TANGENT in models "
+     "with KHR_texture_transform or another set of UVs.",
+     kModelTypes, kModelEncodings, RoughnessUse::green},
     // Drawn by tests/engines: the maps of 2D lights.
     {"phaser", png, rgb8, YAxis::up, false, "",
      "The lights of Phaser read x, y and z from R, G and B and expect green up. They turn the normals with a rotated "
@@ -162,7 +176,8 @@ EngineNeeds needs_of(const Engine& engine) {
     return {std::string(engine.name),
             {engine.types.begin(), engine.types.end()},
             {engine.encodings.begin(), engine.encodings.end()},
-            engine.has_mips};
+            engine.has_mips,
+            {engine.in_ktx2.begin(), engine.in_ktx2.end()}};
 }
 
 std::vector<Word> engine_words() {

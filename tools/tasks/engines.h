@@ -35,6 +35,7 @@ struct Engine {
     std::span<const Container> types;
     std::span<const Encoding> encodings;
     RoughnessUse roughness = RoughnessUse::any;
+    std::span<const Encoding> in_ktx2 = {};  // instead of encodings, in KTX2
 };
 
 [[nodiscard]] std::span<const Engine> engines();

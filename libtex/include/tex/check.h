@@ -129,12 +129,14 @@ struct Rule {
 // The rule with this id or name; null if there is none.
 [[nodiscard]] TEX_API const Rule* find_rule(std::string_view id_or_name);
 
-// What an engine reads, for rule N113.
+// What an engine reads, for rule N113, and its name, for rule N808, which knows what it draws wrongly of models:
+// "three", "playcanvas", "cesium", "filament"; "gltf" stands for all of them.
 struct EngineNeeds {
-    std::string engine;               // its name in messages
-    std::vector<Container> types;     // of files, by their extension; a name without one is not judged
-    std::vector<Encoding> encodings;  // that it reads as normals
-    bool levels = false;              // it builds no levels; nor does any engine for block formats
+    std::string engine;                  // its name in messages
+    std::vector<Container> types;        // of files, by their extension; a name without one is not judged
+    std::vector<Encoding> encodings;     // that it reads as normals
+    bool levels = false;                 // it builds no levels; nor does any engine for block formats
+    std::vector<Encoding> in_ktx2 = {};  // those of KTX2, if it reads others there
 };
 
 // What a project requires of its files. By default only the sides are limited, to 16384 texels as in Direct3D 12.
@@ -147,7 +149,7 @@ struct Requirements {
     int max_extent = 16384;  // texels along a side
     bool power_of_two = false;
     bool tiles = false;  // the map repeats without a seam
-    std::optional<EngineNeeds> engine = {};
+    std::vector<EngineNeeds> engines = {};
 };
 
 enum class RequirementKey { format, mips, extent, max_extent, y, pow2, tiles };

@@ -99,11 +99,13 @@ void check_engine(const CheckContext& context, const EngineNeeds& needs, Finding
     }
     const Texture& texture = context.texture;
     const Swizzle& swizzle = context.stored.swizzle;
-    const bool is_read = std::any_of(needs.encodings.begin(), needs.encodings.end(),
+    const bool is_other = type == Container::ktx2 && !needs.in_ktx2.empty();
+    const std::vector<Encoding>& encodings = is_other ? needs.in_ktx2 : needs.encodings;
+    const bool is_read = std::any_of(encodings.begin(), encodings.end(),
                                      [&](Encoding encoding) { return holds_encoding(texture, swizzle, encoding); });
     if (!is_read) {
         reasons.push_back("does not read normals from " + format_text(texture, swizzle) + " but from " +
-                          names_of(needs.encodings, kEncodingNames));
+                          names_of(encodings, kEncodingNames));
     }
     // Engines treat floats as they treat other pictures.
     if (is_read && context.stored.is_signed && format_info(texture.format).sample == SampleKind::floating)
@@ -148,7 +150,7 @@ void check_file_rules(const CheckContext& context, Findings& findings) {
     if (texture.srgb) findings.add("N111", format_text(texture, context.stored.swizzle) + ", as sRGB");
     check_astc_layout(context, findings);
     check_basis_channels(context, findings);
-    if (require.engine) check_engine(context, *require.engine, findings);
+    for (const EngineNeeds& needs : require.engines) check_engine(context, needs, findings);
     if (require.y && texture.y_known && texture.y_axis != *require.y) {
         findings.add("N112", "the file says " + direction(texture.y_axis) + " instead of " + direction(*require.y));
     }

@@ -7,6 +7,8 @@
 
 #include <tex/mesh.h>
 
+#include "checks/model_engines.h"
+
 namespace tex::inline v1 {
 namespace {
 
@@ -52,12 +54,6 @@ void check_uv_set(const MapInModel& in, Findings& findings) {
     finding.unit = "share";
 }
 
-bool has_both_signs(const SelectedPart& selected) {
-    const auto is_mirrored = [](const Float4& tangent) { return tangent.w < 0.0f; };
-    const bool any = std::any_of(selected.tangents.begin(), selected.tangents.end(), is_mirrored);
-    return any && !std::all_of(selected.tangents.begin(), selected.tangents.end(), is_mirrored);
-}
-
 }  // namespace
 
 void check_model_rules(const CheckContext& context, Findings& findings) {
@@ -74,8 +70,9 @@ void check_model_rules(const CheckContext& context, Findings& findings) {
         finding.figure = in.map.scale;
         finding.unit = "ratio";
     }
-    if (in.map.is_double_sided && context.options.mesh != nullptr && has_both_signs(context.options.mesh->selected))
-        findings.add("N805", "doubleSided is true, and w of tangents is 1 and -1");
+    if (in.map.is_double_sided && context.options.mesh != nullptr && context.options.mesh->selected.has_tangents)
+        findings.add("N805", "doubleSided is true, and the mesh has TANGENT");
+    check_engines_with_model(context, findings);
 }
 
 }  // namespace tex::inline v1

@@ -12,6 +12,7 @@
 
 #include <tex/mesh.h>
 
+#include "checks/model_engines.h"
 #include "checks/thresholds.h"
 
 namespace tex::inline v1 {
@@ -194,7 +195,7 @@ double area_in_map(const MeshPart& part, std::size_t triangle) {
 Result<void> check_tangent_rules(const CheckContext& context, Findings& findings) {
     const SelectedPart& selected = context.options.mesh->selected;
     check_quads(selected.part, findings);
-    if (selected.has_normal_map && !selected.has_tangents) {
+    if (selected.has_normal_map && !selected.has_tangents && misses_tangents(context)) {
         findings.add("N701", std::string("they come from ") +
                                  std::string(name_of(kTangentSourceNames, selected.source)) + " here");
     }

@@ -32,10 +32,16 @@ void check_lengths(const CheckContext& context, Findings& findings) {
         add_counted(context, findings, "N205", Property::null_vector, " are shorter than 0.1");
     }
     if (!has_free_lengths(context) && counts.share(Property::off_length) > kOffLengthShare) {
-        add_counted(context, findings, "N201", Property::off_length,
-                    " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
-                        ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
-                        decimal(static_cast<double>(counts.max_length), 2) + ")");
+        // Averages and interpolation make vectors shorter.
+        constexpr float kStretched = 1.08f;
+        const bool is_stretched = counts.mean_length > 1.0 && counts.max_length > kStretched;
+        Finding& finding =
+            add_counted(context, findings, "N201", Property::off_length,
+                        " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
+                            ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
+                            decimal(static_cast<double>(counts.max_length), 2) + ")");
+        if (is_stretched)
+            finding.message += "; lengths above 1 are what contrast, levels and sharpening leave, which turn vectors too";
     }
     if (counts.share(Property::z_below) > kBelowShare)
         add_counted(context, findings, "N202", Property::z_below, " have z below zero");

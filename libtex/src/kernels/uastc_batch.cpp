@@ -3,25 +3,16 @@
 #include "kernels/uastc_batch.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
 #include "blocks/uastc_modes.h"
-#include "kernels/bc7_guess.h"
 #include "kernels/uastc_kinds.h"
 #include "kernels/uastc_solid.h"
 
 namespace tex::inline v1 {
 namespace {
 
-constexpr unsigned kAllTexels = 0xffff;
-
-std::size_t at(int n) { return static_cast<std::size_t>(n); }
-
 // The most tries that a block has at a time.
 int most_tries(const UastcEffort& effort) { return effort.planes + effort.search.parts + 3; }
-
-std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(value); }
 
 }  // namespace
 
@@ -33,36 +24,9 @@ UastcEffort uastc_effort(Effort effort) {
     }
 }
 
-UastcBatch::UastcBatch(const UastcEffort& effort) : effort_(effort), lanes_(bc7_lanes()) {
-    const std::size_t tries = at(kMost) * at(most_tries(effort));
-    texels_.resize(at(kMost + kBc7Lanes));
-    tries_.reserve(tries);
-    parts_.reserve(3 * tries);
-    sorted_.reserve(3 * tries);
-    indices_.resize(at(kMost));
-}
+UastcBatch::UastcBatch(const UastcEffort& effort) : BlockTries(most_tries(effort)), effort_(effort) {}
 
-std::size_t UastcBatch::memory(const UastcEffort& effort) {
-    const std::size_t tries = at(kMost) * at(most_tries(effort));
-    return LentMemory::taken_by(at(kMost + kBc7Lanes) * sizeof(Texels)) + LentMemory::taken_by(tries * sizeof(Try)) +
-           2 * LentMemory::taken_by(3 * tries * sizeof(Part)) + LentMemory::taken_by(at(kMost) * sizeof(Indices));
-}
-
-// Makes vectors unit vectors.
-void UastcBatch::prepare(int count) {
-    for (int block = 0; block < count; ++block) {
-        for (float(&texel)[3] : texels_[at(block)].value) {
-            const float length = std::sqrt(texel[0] * texel[0] + texel[1] * texel[1] + texel[2] * texel[2]);
-            if (length > 1e-6f) {
-                for (float& component : texel) component /= length;
-            } else {
-                texel[0] = texel[1] = 0.0f;
-                texel[2] = 1.0f;
-            }
-        }
-    }
-    for (int block = count; block % lanes_ != 0; ++block) texels_[at(block)] = texels_[at(count - 1)];
-}
+std::size_t UastcBatch::memory(const UastcEffort& effort) { return memory_of(most_tries(effort)); }
 
 // Adds what seems worth a fit; lines with the errors that they are guessed to have.
 void UastcBatch::add_tries(int block, int lane) {
@@ -101,110 +65,16 @@ void UastcBatch::add_tries(int block, int lane) {
     }
 }
 
-void UastcBatch::gather(const Try& from, const Part& part, int lane) {
-    const Texels& texels = texels_[at(from.block)];
-    int k = 0;
-    for (unsigned left = part.mask; left != 0; left &= left - 1, ++k) {
-        const float* const value = texels.value[std::countr_zero(left)];
-        for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = value[from.component[c]];
-        group_.weight[k][lane] = 1.0f;
-    }
-    for (; k < group_.texels; ++k) {
-        for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = 0.0f;
-        group_.weight[k][lane] = 0.0f;
-    }
-    for (int e = 0; e < 2; ++e) {
-        for (int c = 0; c < 3; ++c) group_.ends[e][c][lane] = from.ends[part.subset][e][c];
-    }
-}
-
-void UastcBatch::scatter(const Part& part, int lane, bool indices, Try& to) {
-    to.error += group_.error[lane];
-    for (int e = 0; e < 2; ++e) {
-        for (int c = 0; c < 3; ++c) to.ends[part.subset][e][c] = to_byte(group_.ends[e][c][lane]);
-    }
-    if (!indices) return;
-    Indices& found = indices_[at(to.block)];
-    int k = 0;
-    for (unsigned left = part.mask; left != 0; left &= left - 1, ++k) {
-        const int texel = std::countr_zero(left);
-        found.line[texel] = to_byte(group_.color[k][lane]);
-        found.second[texel] = to_byte(group_.scalar[k][lane]);
-    }
-}
-
-// Drops lines whose guesses are above the error of the block in two planes.
-void UastcBatch::drop_hopeless() {
-    std::size_t kept = 0;
-    float least = 0;
-    for (std::size_t k = 0; k < tries_.size(); ++k) {
-        const Try one = tries_[k];
-        if (k == 0 || one.block != tries_[k - 1].block) least = kBc7None;  // the planes of a block come first
-        if (one.kind < kUastcOne) least = std::min(least, one.error);
-        if (one.kind < kUastcOne || one.error <= least * effort_.worth) tries_[kept++] = one;
-    }
-    tries_.resize(kept);
-}
-
-// Sorts parts by their numbers of texels.
-void UastcBatch::sort_parts() {
-    std::size_t place[18] = {};
-    for (const Part& part : parts_) ++place[part.texels + 1];
-    for (int k = 1; k < 18; ++k) place[k] += place[k - 1];
-    sorted_.resize(parts_.size());
-    for (const Part& part : parts_) sorted_[place[part.texels]++] = part;
-    parts_.swap(sorted_);
-}
-
-// Fits the tries of these kinds, kind by kind, and those of several subsets subset by subset.
 void UastcBatch::fit(int first, int end, const Bc7Steps& steps) {
     group_.has_alpha = false;
     for (int kind = first; kind < end; ++kind) {
         const Bc7Kind& which = kUastcKindTable[kind];
-        parts_.clear();
-        for (std::size_t k = 0; k < tries_.size(); ++k) {
-            if (tries_[k].kind != kind) continue;
-            tries_[k].error = 0.0f;
-            for (int subset = 0; subset < which.subsets; ++subset) {
-                const unsigned texels =
-                    which.subsets == 1 ? kAllTexels : uastc_texels(which.mode, tries_[k].pattern, subset);
-                parts_.push_back({static_cast<int>(k), static_cast<std::uint16_t>(texels),
-                                  static_cast<std::uint8_t>(subset), static_cast<std::uint8_t>(std::popcount(texels))});
-            }
-        }
-        if (which.subsets > 1) sort_parts();
-        for (std::size_t k = 0; k < parts_.size(); k += at(lanes_)) {
-            const int used = static_cast<int>(std::min(at(lanes_), parts_.size() - k));
-            group_.texels = parts_[k + at(used - 1)].texels;
-            for (int lane = 0; lane < lanes_; ++lane) {
-                const Part& part = parts_[k + at(std::min(lane, used - 1))];
-                gather(tries_[at(part.index)], part, lane);
-            }
-            if (kind < kUastcOne)
-                fit_uastc_planes(which, steps, group_);
-            else
-                fit_uastc_lines(which, steps, group_);
-            for (int lane = 0; lane < used; ++lane) {
-                const Part& part = parts_[k + at(lane)];
-                scatter(part, lane, steps.indices, tries_[at(part.index)]);
-            }
-        }
+        fit_kind(
+            kind, which.subsets, 3, steps.indices,
+            [&](unsigned pattern, int subset) { return uastc_texels(which.mode, pattern, subset); },
+            [](const Try&) { return 0.0f; },
+            [&] { kind < kUastcOne ? fit_uastc_planes(which, steps, group_) : fit_uastc_lines(which, steps, group_); });
     }
-}
-
-// Keeps the best so many tries of each block, blocks in order.
-void UastcBatch::keep(int count) {
-    const auto better = [](const Try& a, const Try& b) { return a.error < b.error; };
-    std::size_t kept = 0;
-    for (std::size_t first = 0, end = 0; first < tries_.size(); first = end) {
-        while (end < tries_.size() && tries_[end].block == tries_[first].block) ++end;
-        for (std::size_t k = first; k < std::min(end, first + at(count)); ++k) {
-            const auto from = tries_.begin() + static_cast<std::ptrdiff_t>(k);
-            std::iter_swap(from, std::min_element(from, tries_.begin() + static_cast<std::ptrdiff_t>(end), better));
-            tries_[kept++] = *from;
-        }
-    }
-    tries_.resize(kept);
 }
 
 UastcContent UastcBatch::content_of(const Try& found) const {
@@ -286,23 +156,17 @@ void UastcBatch::write(int count, std::byte* blocks) {
 }
 
 void UastcBatch::encode(int count, std::byte* blocks) {
-    prepare(count);
+    make_unit(count);
     tries_.clear();
     for (int first = 0; first < count; first += lanes_) {
-        group_.texels = 16;
-        for (int lane = 0; lane < lanes_; ++lane) {
-            const Texels& texels = texels_[at(first + lane)];
-            for (int k = 0; k < 16; ++k) {
-                for (int c = 0; c < 3; ++c) group_.value[k][c][lane] = texels.value[k][c];
-            }
-        }
+        load(first);
         guess_uastc(group_, effort_.search, guesses_);
         for (int lane = 0; lane < std::min(lanes_, count - first); ++lane) add_tries(first + lane, lane);
     }
     // Where a block has one try in two planes, which nothing improves, its indices are final, unless a line is better.
     const bool is_final = effort_.planes == 1 && effort_.rounds == 0;
     fit(kUastcPlanes, kUastcOne, {true, 0, false, is_final, effort_.solves[0]});
-    drop_hopeless();
+    drop_hopeless(kUastcOne, effort_.worth);
     fit(kUastcOne, kUastcKinds, {true, 0, false, false});
     keep(effort_.kept);
     if (effort_.rounds > 0) {

@@ -9,9 +9,9 @@
 #include <tex/pack.h>
 
 #include "blocks/uastc_write.h"
+#include "kernels/block_tries.h"
 #include "kernels/uastc_fit.h"
 #include "kernels/uastc_hints.h"
-#include "memory/lent_memory.h"
 
 namespace tex::inline v1 {
 
@@ -28,62 +28,24 @@ struct UastcEffort {
 };
 [[nodiscard]] UastcEffort uastc_effort(Effort effort);
 
-class UastcBatch {
+class UastcBatch : public BlockTries<3> {
 public:
-    static constexpr int kMost = 256;  // blocks
-
     // Takes memory.
     explicit UastcBatch(const UastcEffort& effort);
     [[nodiscard]] static std::size_t memory(const UastcEffort& effort);
-
-    // The texels of a block: x, y, z of a vector, row by row.
-    float (*texels(int block))[3] { return texels_[static_cast<std::size_t>(block)].value; }
 
     // Encodes the first `count` blocks.
     void encode(int count, std::byte* blocks);
 
 private:
-    struct Texels {
-        float value[16][3];
-    };
-    // A way to encode a block.
-    struct Try {
-        float error;
-        std::int16_t block;
-        std::uint8_t kind, pattern;
-        std::uint8_t component[3];  // of two planes: that of the second one, and those of the first
-        std::uint8_t ends[3][2][3];
-    };
-    // A subset of a try, of which subset 0 is all.
-    struct Part {
-        int index;  // of the try
-        std::uint16_t mask;
-        std::uint8_t subset, texels;
-    };
-    struct Indices {
-        std::uint8_t line[16], second[16];
-    };
-
-    void prepare(int count);
     void add_tries(int block, int lane);
-    void drop_hopeless();
-    void sort_parts();
     void fit(int first, int end, const Bc7Steps& steps);
-    void gather(const Try& from, const Part& part, int lane);
-    void scatter(const Part& part, int lane, bool indices, Try& to);
-    void keep(int count);
     [[nodiscard]] UastcContent content_of(const Try& found) const;
     void gather_hints(const UastcContent& content, int lane);
     void write(int count, std::byte* blocks);
     bool write_solid(int block, std::byte* to);
 
     const UastcEffort effort_;
-    const int lanes_;
-    WorkingVector<Texels> texels_;
-    WorkingVector<Try> tries_;
-    WorkingVector<Part> parts_, sorted_;
-    WorkingVector<Indices> indices_;
-    Bc7Group group_;
     UastcGuesses guesses_;
     UastcHintGroup hints_;
 };

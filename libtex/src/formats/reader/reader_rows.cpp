@@ -193,6 +193,36 @@ std::string absent_text(const ReaderHeader& header, bool has_no_data) {
                                 : "the texels there are read as 0, because the file has no no-data value");
 }
 
+// A type that is known, but not read, and the program that makes PNG of it.
+struct UnreadType {
+    std::string_view name;
+    std::size_t offset;
+    std::string_view bytes;  // that files have there
+    std::string_view program;
+};
+
+constexpr UnreadType kUnreadTypes[] = {
+    {"AVIF", 4, "ftypavif", "avifdec"},
+    {"AVIF", 4, "ftypavis", "avifdec"},
+    {"HEIF", 4, "ftyphei", "heif-convert"},
+    {"HEIF", 4, "ftypmif1", "heif-convert"},
+    {"JPEG XL", 4, "JXL \r\n", "djxl"},
+    {"JPEG XL", 0, "\xff\x0a", "djxl"},
+};
+
+Error unknown_type(const InputFile& file) {
+    const auto head = file.head();
+    for (const UnreadType& type : kUnreadTypes) {
+        if (head.size() < type.offset + type.bytes.size() ||
+            std::memcmp(head.data() + type.offset, type.bytes.data(), type.bytes.size()) != 0)
+            continue;
+        return {ErrorCode::unsupported, file.path(),
+                std::string(type.name) + " is not supported; \"" + std::string(type.program) +
+                    "\" makes PNG of it, with the losses that it has"};
+    }
+    return {ErrorCode::bad_data, file.path(), "not a picture, or of a type that is not supported"};
+}
+
 class ReaderRows final : public RowSource {
 public:
     explicit ReaderRows(InputFile& file) : file_(file) {}
@@ -232,7 +262,7 @@ private:
 
 Result<void> ReaderRows::start(const ReadOptions& options) {
     const std::optional<std::string> format = format_of(file_.head());
-    if (!format) return Error{ErrorCode::bad_data, file_.path(), "not a picture, or of a type that is not supported"};
+    if (!format) return unknown_type(file_);
     const Result<int> input = descriptor_of(file_, options, memory_);
     if (!input) return input.error();
     Result<Descriptor> result = memory_file(file_.path());
