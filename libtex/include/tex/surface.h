@@ -170,7 +170,8 @@ struct OcclusionMaps {
     Plane<float> occlusion;  // 0 to 1
     Plane<float> sky_view;   // 0 to 1
     NormalMap bent;
-    std::vector<Plane<float>> horizons;  // 0 to 1
+    // 0 to 1. In memory they lie one below the other: the rows of each follow those of the one before.
+    std::vector<Plane<float>> horizons;
 };
 
 // What the surface of a height field hides from its texels. The surface is the one whose normals bake(field, bake)

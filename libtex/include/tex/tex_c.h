@@ -470,10 +470,10 @@ typedef struct tex_occlusion_maps {
 
 TEX_C_API size_t tex_occlusion_size(int32_t width, int32_t height, const tex_occlusion_options* options);
 
-// What the surface of heights hides from its texels: see occlusion() in surface.h. NaN is a hole. Planes and maps have
-// the extent of the heights.
+// What the surface of heights hides from its texels: see occlusion() in surface.h. Planes and maps have the extent of
+// the heights.
 //
-// Fails with TEX_BAD_DATA: a height is infinite, or all are NaN.
+// Fails with TEX_BAD_DATA: a height is not finite.
 TEX_C_API int32_t tex_occlusion(const tex_plane* heights, const tex_occlusion_options* options,
                                 const tex_occlusion_maps* out, void* scratch, size_t scratch_size);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -96,6 +97,8 @@ public:
     Sky(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution, ProgressSpan span)
         : source_(source), options_(options), execution_(execution), span_(span), extent_(source.heights.extent()),
           rows_(source, options.occlusion || options.bent) {
+        for (auto& of_orientation : directions_)
+            of_orientation.reserve(static_cast<std::size_t>(options.directions + options.horizons));
         // The light is that of the middles of equal parts of a turn; horizons lie at their ends.
         if (options.occlusion || options.sky_view || options.bent) {
             for (int k = 0; k < options.directions; ++k) add_direction((k + 0.5) / options.directions, kLight);
