@@ -23,6 +23,7 @@
 #include <tex/surface.h>
 
 #include "reference/occlusion.h"
+#include "scratch.h"
 #include "unit/fields.h"
 
 namespace {
@@ -157,7 +158,8 @@ void print_saga() {
     const auto image = read_image(TEX_SOURCE_DIR "/../shared/data/height/dem_puget_sound_1025x1025_u16.png");
     const auto whole = image ? height_field(*image) : Result<PictureHeights>(image.error());
     if (!whole) return;
-    const std::string name = std::filesystem::temp_directory_path() / "tex_saga";
+    const Scratch scratch;
+    const std::string name = scratch.path("saga");
     std::printf(
         "\n| size | directions | SAGA: s of the processor | ours | mean difference | p99 "
         "|\n|---|---|---|---|---|---|\n");

@@ -42,10 +42,10 @@ GLuint upload_horizons(const std::vector<tex::Plane<float>>& horizons) {
     gl.GenTextures(1, &texture);
     gl.BindTexture(GL_TEXTURE_3D, texture);
     gl.TexImage3D(GL_TEXTURE_3D, 0, GL_R32F, extent.width, extent.height, kSlices, 0, GL_RED, GL_FLOAT, sines.data());
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-        gl.TexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
-    for (const GLenum axis : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
-        gl.TexParameteri(GL_TEXTURE_3D, axis, GL_REPEAT);
+    constexpr GLenum kFilters[] = {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER};
+    for (const GLenum filter : kFilters) gl.TexParameteri(GL_TEXTURE_3D, filter, GL_LINEAR);
+    constexpr GLenum kAxes[] = {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R};
+    for (const GLenum axis : kAxes) gl.TexParameteri(GL_TEXTURE_3D, axis, GL_REPEAT);
     return texture;
 }
 

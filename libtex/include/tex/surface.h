@@ -211,12 +211,11 @@ struct OcclusionMaps {
 // the mean over rough maps (tests/bench/OCCLUSION.md): 0.0011 with 16 directions, 0.0007 with 32; of sky view twice
 // that.
 //
-// Memory, besides the field and the maps: 20 bytes for each texel, and for each thread 2100 bytes for each row or
-// column of the longer side, of which it touches little.
+// Memory, besides the field and the maps: 16 bytes for each texel, 8 more if there are holes, and for each thread 2100
+// bytes for each row or column of the longer side, of which it touches little.
 //
-// Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite, or it
-// is
-//                     0 or below in one direction and not in the other; as validate(options) and validate(bake)
+// Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite, or
+//                     has another sign in one direction than in the other; as validate(options) and validate(bake)
 //         bad_data    a height is infinite; all are NaN
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.
