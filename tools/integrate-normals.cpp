@@ -16,6 +16,7 @@
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/sky.h"
 #include "options/surface.h"
 #include "tasks/name_pattern.h"
 #include "tasks/written_levels.h"
@@ -41,6 +42,7 @@ private:
     cli::WrapOptions wrap_;
     cli::StoredHeights stored_;
     cli::SurfaceMaps maps_;
+    cli::SkyOptions sky_;
     std::optional<double> steepest_, least_response_;
     int level_ = 0;
     bool all_levels_ = false;
@@ -74,10 +76,13 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
                 "the file type, if the output's name does not say it (a pipe)")
         .preset = "by extension; png for -";
     maps_.add(command, files);
+    sky_.add(command, files);
     running.add(command);
     command.example("integrate-normals rock_n.dds -o rock_h.png --uv-height 0.05", "Heights of 16 bits, 0 to 1.");
     command.example("integrate-normals rock_n.png -o rock_h.exr --curvature-out rock_c.png",
                     "Heights as floats, and the curvature of the surface.");
+    command.example("integrate-normals rock_n.png -o rock_h.png --occlusion-out rock_ao.png",
+                    "Heights, and the ambient occlusion of the surface.");
     command.example("integrate-normals *_n.png --out-dir heights --name '{stem:-_n}_h.png'", "A folder at once.");
     command.check([this] {
         if (strength_.bumpiness == 0.0f || strength_.height_range == 0.0 || strength_.uv_height == 0.0)
@@ -102,11 +107,15 @@ cli::OutputRules IntegrateNormals::rules() const {
     cli::OutputRules rules;
     rules.batch = Container::png;
     rules.standard_output = Container::png;
-    rules.amend = [this](cli::Task& task) { maps_.amend(task); };
+    rules.amend = [this](cli::Task& task) {
+        maps_.amend(task);
+        sky_.amend(task);
+    };
     return rules;
 }
 
 Result<void> IntegrateNormals::check(const std::vector<cli::Task>& tasks) {
+    sky_.check(command, false);
     for (const cli::Task& task : tasks) {
         std::ignore = stored_.format_in(task);
         if (!all_levels_ || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
@@ -192,8 +201,15 @@ Result<void> IntegrateNormals::process(cli::Job& job) {
                         "from the others",
                         unknown, levels->front().field.height.extent().texels()));
     }
+    OcclusionMaps hidden;  // of the heights as they are, which are stretched for their file
+    if (sky_.is_given()) {
+        auto maps = occlusion(levels->front().field, sky_.options(), kernel_.bake, job.until(0.88));
+        if (!maps) return maps.error().of(job.task.input);
+        hidden = std::move(*maps);
+    }
     const std::size_t first = all_levels_ ? 0 : static_cast<std::size_t>(level_);
     if (auto done = write_heights(job, *levels); !done) return done;
+    if (auto done = sky_.write(job, std::move(hidden), source->info.y_axis); !done) return done;
     if (auto done = maps_.write_curvature(job, source->chain.levels[first], wrap_, 0.95); !done) return done;
     return maps_.write_curl(job, levels->front(), 1.0);
 }

@@ -82,6 +82,11 @@ py::object hidden(Call& call, Relief& relief, OcclusionOptions& options, BakeOpt
     if (options.occlusion) result["occlusion"] = array_of(std::move(maps.occlusion));
     if (options.sky_view) result["sky_view"] = array_of(std::move(maps.sky_view));
     if (options.bent) result["bent"] = array_of(std::move(maps.bent));
+    if (options.horizons > 0) {
+        py::list planes;
+        for (Plane<float>& plane : maps.horizons) planes.append(array_of(std::move(plane)));
+        result["horizons"] = py::module_::import("numpy").attr("stack")(planes);
+    }
     return result;
 }
 
@@ -120,7 +125,8 @@ void add_heights(Module& module) {
     module.verb<Relief, OcclusionOptions, BakeOptions, Running>(
         "occlusion", {{"height", kHeights}}, "dict[str, NDArray[np.float32]]",
         "A dict of the maps that are wanted: 'occlusion' and 'sky_view' are arrays (height, width), 'bent' is one of "
-        "(height, width, 3). `height`, bumpiness and wrap are those of bake(); texels that are NaN are holes.",
+        "(height, width, 3), and 'horizons' one of (horizons, height, width). `height`, bumpiness and wrap are those "
+        "of bake(); texels that are NaN are holes.",
         hidden);
     module.verb<Running>("slope_range", {{"n", kMapSource}}, "dict[str, tuple[float, float]]",
                          "The range of slopes in a normal map, {'x': (least, greatest), 'y': (least, greatest)}: rise "

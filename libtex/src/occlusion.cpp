@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <utility>
 
 #include <tex/surface.h>
 
@@ -76,7 +78,15 @@ Result<OcclusionMaps> occlusion(const HeightField& field, const OcclusionOptions
         const HeightFieldHead head{field.bumpiness_x, field.bumpiness_y, field.wrap_x, field.wrap_y, field.ground};
         const HorizonSource source{field.height, *holes > 0 ? solid : field.height, head, gradient,
                                    middle_strength(head, extent)};
-        return sky_of(source, options, execution, {filled, 1.0});
+        Result<SkyMaps> sky = sky_of(source, options, execution, {filled, 1.0});
+        if (!sky) return sky.error();
+        OcclusionMaps maps{std::move(sky->occlusion), std::move(sky->sky_view), std::move(sky->bent), {}};
+        const auto stacked = std::make_shared<Plane<float>>(std::move(sky->horizons));
+        for (int k = 0; k < options.horizons; ++k) {
+            maps.horizons.emplace_back(extent, stacked->stride(),
+                                       std::shared_ptr<float>(stacked, stacked->row(k * extent.height)));
+        }
+        return maps;
     });
 }
 

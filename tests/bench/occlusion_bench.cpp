@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// occlusion_bench: what the surface of heights hides: processor time and memory from 1024x1024 to 8192x8192, and, on
-// crops of maps of ../shared/data, the error beside brute force for each number of directions.
+// occlusion_bench: what the surface of heights hides: processor time and memory from 1024x1024 to 8192x8192 for 8 to 64
+// directions, and, on crops of maps of ../shared/data, the error beside brute force for each number of directions, and
+// the difference from SAGA's Sky View Factor where saga_cmd is found (Debian's package saga).
 
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <ios>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +23,7 @@
 #include <tex/surface.h>
 
 #include "reference/occlusion.h"
+#include "scratch.h"
 #include "unit/fields.h"
 
 namespace {
@@ -35,10 +41,11 @@ void print_times(int largest) {
             return std::sin(0.01 * i + 0.003 * j) + 0.2 * std::sin(0.2 * i) * std::sin(0.15 * j) +
                    0.05 * fields::noise(i, j);
         });
-        for (const bool all : {false, true}) {
-            const OcclusionOptions options{16, 0.0f, true, all, all};
+        for (const int directions : {8, 16, 32, 64, -16}) {  // below 0: all maps
+            const bool all = directions < 0;
+            const OcclusionOptions options{std::abs(directions), 0.0f, true, all, all};
             double best = 1e9;
-            for (int run = 0; run < 3; ++run) {
+            for (int run = 0; run < (size < 4096 ? 3 : 1); ++run) {
                 const double begin = processor_seconds();
                 if (!occlusion(field, options)) return;
                 best = std::min(best, processor_seconds() - begin);
@@ -46,8 +53,9 @@ void print_times(int largest) {
             rusage usage{};
             getrusage(RUSAGE_SELF, &usage);
             const double texels = static_cast<double>(size) * size;
-            std::printf("| %dx%d | 16 | %s | %.2f | %.1f | %.1f |\n", size, size, all ? "all three" : "occlusion", best,
-                        best * 1e9 / texels / options.directions, static_cast<double>(usage.ru_maxrss) * 1024 / texels);
+            std::printf("| %dx%d | %d | %s | %.2f | %.1f | %.1f |\n", size, size, options.directions,
+                        all ? "all three" : "occlusion", best, best * 1e9 / texels / options.directions,
+                        static_cast<double>(usage.ru_maxrss) * 1024 / texels);
             std::fflush(stdout);
         }
     }
@@ -127,11 +135,77 @@ void print_errors() {
     }
 }
 
+// SAGA's grids: a header of text, and floats with the lowest row first.
+void write_grid(const std::string& name, const HeightField& field) {
+    const Extent extent = field.height.extent();
+    std::ofstream(name + ".sgrd") << "NAME = h\nDATAFORMAT = FLOAT\nBYTEORDER_BIG = FALSE\nPOSITION_XMIN = 0\n"
+                                  << "POSITION_YMIN = 0\nCELLCOUNT_X = " << extent.width
+                                  << "\nCELLCOUNT_Y = " << extent.height << "\nCELLSIZE = 1\nZ_FACTOR = 1\n"
+                                  << "NODATA_VALUE = -99999\nTOPTOBOTTOM = FALSE\n";
+    std::ofstream data(name + ".sdat", std::ios::binary);
+    for (int j = extent.height - 1; j >= 0; --j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float height = field.height.at(i, j) * field.bumpiness_x;
+            data.write(reinterpret_cast<const char*>(&height), sizeof height);
+        }
+    }
+}
+
+// What SAGA makes of the same heights, weighted like our occlusion (Boehner, Antonic: Land-Surface Parameters Specific
+// to Topo-Climatology, 2009); of a terrain's inside, as its ground ends at the border.
+void print_saga() {
+    if (std::system("saga_cmd --version > /dev/null 2>&1") != 0) return;
+    const auto image = read_image(TEX_SOURCE_DIR "/../shared/data/height/dem_puget_sound_1025x1025_u16.png");
+    const auto whole = image ? height_field(*image) : Result<PictureHeights>(image.error());
+    if (!whole) return;
+    const Scratch scratch;
+    const std::string name = scratch.path("saga");
+    std::printf(
+        "\n| size | directions | SAGA: s of the processor | ours | mean difference | p99 "
+        "|\n|---|---|---|---|---|---|\n");
+    for (const int size : {256, 512}) {
+        const HeightField field = fields::field_of({size, size}, 40.0f, Wrap::clamp, [&](int i, int j) {
+            return static_cast<double>(whole->height.at(200 + i, 300 + j));
+        });
+        write_grid(name, field);
+        rusage before{}, after{};
+        getrusage(RUSAGE_CHILDREN, &before);
+        const std::string command = "OMP_NUM_THREADS=1 saga_cmd ta_lighting 3 -DEM " + name + ".sgrd -VISIBLE " + name +
+                                    "_v -SVF " + name + "_s -RADIUS 100000 -NDIRS 32 > /dev/null 2>&1";
+        if (std::system(command.c_str()) != 0) return;
+        getrusage(RUSAGE_CHILDREN, &after);
+        const auto seconds = [](const rusage& usage) {
+            return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+        };
+        const double begin = processor_seconds();
+        const auto maps = occlusion(field, {32, 0.0f, true, false, false});
+        const double own = processor_seconds() - begin;
+        std::vector<float> theirs(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+        std::ifstream data(name + "_s.sdat", std::ios::binary);
+        if (!maps ||
+            !data.read(reinterpret_cast<char*>(theirs.data()), static_cast<std::streamsize>(4 * theirs.size())))
+            return;
+        std::vector<double> differences;
+        double sum = 0.0;
+        for (int j = size / 8; j < size - size / 8; ++j) {
+            for (int i = size / 8; i < size - size / 8; ++i) {
+                const float saga = theirs[static_cast<std::size_t>((size - 1 - j) * size + i)];
+                differences.push_back(std::abs(static_cast<double>(saga - maps->occlusion.at(i, j))));
+                sum += differences.back();
+            }
+        }
+        std::sort(differences.begin(), differences.end());
+        std::printf("| %d | 32 | %.2f | %.3f | %.4f | %.4f |\n", size, seconds(after) - seconds(before), own,
+                    sum / static_cast<double>(differences.size()), differences[differences.size() * 99 / 100]);
+    }
+}
+
 }  // namespace
 
 // An argument: the largest extent, 8192 without.
 int main(int count, char** arguments) {
     print_errors();
+    print_saga();
     std::printf("\n");
     print_times(count > 1 ? std::stoi(arguments[1]) : 8192);
 }

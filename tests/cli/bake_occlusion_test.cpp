@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake-normals --occlusion-out, --sky-view-out, --bent-out, --blue occlusion: what heights hide, beside their normals.
+// bake-normals --occlusion-out, --sky-view-out, --bent-out, --horizon-out, --blue occlusion: what heights hide, beside
+// their normals; the same of integrate-normals.
 
 #include <algorithm>
 #include <cmath>
@@ -89,6 +90,45 @@ TEST_F(BakeOcclusion, OcclusionGoesBesideTheNormals) {
     EXPECT_LE(difference("pbr.png", 3, image("h.png").planes[0]), 0.51f / 255.0f);
 }
 
+TEST_F(BakeOcclusion, HorizonsAreSlicesOneBelowTheOther) {
+    const Ran ran =
+        run("bake-normals h.png -o n.png --bumpiness 6 --horizon-out hor.png --horizon-directions 5 --json");
+    const auto report = nlohmann::json::parse(ran.out);
+    EXPECT_EQ(report["horizons"]["output"], "hor.png");
+    EXPECT_EQ(report["horizons"]["directions"], 5);
+    const OcclusionMaps is = maps({4, 0.0f, false, false, false, 5});
+    const Extent extent = is.horizons.front().extent();
+    const Image picture = image("hor.png");
+    ASSERT_EQ(picture.extent(), (Extent{extent.width, 5 * extent.height}));
+    for (int j = 0; j < 5 * extent.height; j += 3) {
+        const Plane<float>& slice = is.horizons[static_cast<std::size_t>(j / extent.height)];
+        for (int i = 0; i < extent.width; i += 5)
+            ASSERT_NEAR(picture.planes[0].at(i, j), slice.at(i, j % extent.height), 1.0f / 65535.0f) << i << ' ' << j;
+    }
+    EXPECT_FALSE(report.contains("occlusion"));
+}
+
+TEST_F(BakeOcclusion, NormalsComeBackAsTheOcclusionOfTheirHeights) {
+    run("bake-normals h.png -o n.exr --format float --bumpiness 6 --occlusion-out ao.exr --bent-out bent.png --y down "
+        "--horizon-out hor.exr");
+    run("integrate-normals n.exr -o back.png --bumpiness 6 --y-in down --occlusion-out ao2.exr --sky-view-out sky2.png "
+        "--bent-out bent2.png --horizon-out hor2.exr");
+    // Whatever the strength of the stored heights is.
+    run("integrate-normals n.exr -o back2.png --bumpiness 60 --y-in down --occlusion-out ao3.exr");
+    const Image own = image("ao.exr"), bent = image("bent.png"), horizons = image("hor.exr");
+    double sum = 0.0;
+    EXPECT_LT(difference("ao2.exr", 0, own.planes[0]), 0.12f);
+    EXPECT_LT(difference("ao3.exr", 0, image("ao2.exr").planes[0]), 0.01f);
+    const Image back = image("ao2.exr");
+    for (int j = 0; j < own.extent().height; ++j) {
+        for (int i = 0; i < own.extent().width; ++i)
+            sum += static_cast<double>(std::abs(back.planes[0].at(i, j) - own.planes[0].at(i, j)));
+    }
+    EXPECT_LT(sum / static_cast<double>(own.extent().texels()), 0.002);
+    EXPECT_LT(difference("bent2.png", 1, bent.planes[1]), 0.2f);  // green points down in both
+    EXPECT_LT(difference("hor2.exr", 0, horizons.planes[0]), 0.3f);
+}
+
 TEST_F(BakeOcclusion, BytesDoNotDependOnThreads) {
     for (const char* const threads : {"1", "3"}) {
         const std::string t = threads;
@@ -100,6 +140,9 @@ TEST_F(BakeOcclusion, BytesDoNotDependOnThreads) {
 TEST_F(BakeOcclusion, RefusesWhatCannotBe) {
     refuses("bake-normals h.png -o n.png --occlusion-distance 4", "needs --occlusion-out");
     refuses("bake-normals h.png -o n.png --occlusion-out -", "needs a file");
+    refuses("bake-normals h.png -o n.png --occlusion-out ao.png --horizon-directions 8", "needs --horizon-out");
+    refuses("bake-normals h.png -o n.png --horizon-out hor.png --horizon-directions 65", "at least 4 and at most 64");
+    refuses("bake-normals h.png -o n.png --horizon-out hor.png --occlusion-directions 8", "needs --occlusion-out");
     refuses("bake-normals h.png -o n.png --occlusion-out ao.png --occlusion-directions 3",
             "at least 4 and at most 1024");
     refuses("bake-normals h.png -o n.png --occlusion-out n.png", "n.png");

@@ -44,6 +44,7 @@ const Case kCases[] = {
     {"Picture", "preview-normals", {"a.dds", "-o", "out.png", "--size", "32"}, "a.dds"},
     {"Exr", "mip-normals", {"a.exr", "-o", "out.exr", "--roughness-out", "rough.dds"}, "a.exr"},
     {"Heights", "integrate-normals", {"a.dds", "-o", "out.png", "--curvature-out", "curvature.exr"}, "a.dds"},
+    {"Hidden", "bake-normals", {"a.png", "-o", "out.png", "--occlusion-out", "ao.exr", "--horizon-out", "hor.png"}, ""},
     {"OtherReader", "bake-normals", {"a.tif", "-o", "out.dds"}, "a.tif", true},
     {"Model", "pack-normals", {"a.gltf", "-o", "out.gltf", "--y", "down"}, "a.gltf"},
     {"OtherWriter", "unpack-normals", {"a.dds", "-o", "out.tif"}, "a.dds", true},

@@ -89,7 +89,7 @@ const ReportLine kReports[] = {
     {"compare-normals", {"n.png", "s.png"}},
     {"compare-normals", {"n.png", "--rdo-means", "0,1"}},
     {"preview-normals", {"n.png", "-o", "v.png"}},
-    {"integrate-normals", {"n.png", "-o", "h.png", "--curl-out", "c.png"}},
+    {"integrate-normals", {"n.png", "-o", "h.png", "--curl-out", "c.png", "--horizon-out", "hor.png"}},
     {"convert-normals", {"n.png", "-o", "o.png", "--mesh", "sheet.obj", "--decoder-in", "godot"}},
     {"transfer-normals", {"low.glb", "-o", "t.png", "--high", "high.glb", "--extent", "16"}},
     {"build-normals", {}},

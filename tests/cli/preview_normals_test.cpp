@@ -257,6 +257,8 @@ TEST_F(PreviewNormals, TakesTheWholeMaterial) {
                              "2,1.8,1.5",
                              "--ambient",
                              "0.1",
+                             "--occlusion",
+                             "height.png",
                              "--tint",
                              "1",
                              "--specular",
@@ -276,6 +278,30 @@ TEST_F(PreviewNormals, TakesTheWholeMaterial) {
                              "--mirror"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(extent_of("all.png"), (Extent{80, 60}));
+}
+
+// Without other light, a picture of a white plane is its occlusion.
+TEST_F(PreviewNormals, OcclusionDarkensAmbientLightAlone) {
+    ASSERT_EQ(run(scratch_, "bake-normals",
+                  {"height.png", "-o", "n.png", "--bumpiness", "12", "--occlusion-out", "ao.png", "--no-sync"})
+                  .code,
+              0);
+    const auto with = [&](const std::string& name, std::vector<std::string> more) {
+        more.insert(more.begin(), {"n.png", "-o", name, "--tint", "1", "--specular", "0", "--occlusion", "ao.png"});
+        EXPECT_EQ(preview(more).code, 0);
+        return read_image(scratch_.path(name)).value();
+    };
+    const Image ambient = with("ambient.png", {"--ambient", "1", "--light-color", "0"});
+    const Image occlusion = read_image(scratch_.path("ao.png")).value();
+    for (int i = 0; i < ambient.extent().width; i += 7) {
+        const double srgb = static_cast<double>(ambient.planes[0].at(i, 100));
+        const double linear = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+        EXPECT_NEAR(linear, static_cast<double>(occlusion.planes[0].at(i, 100)), 0.006) << i;
+    }
+    with("direct.png", {"--ambient", "0"});
+    ASSERT_EQ(preview({"n.png", "-o", "open.png", "--tint", "1", "--specular", "0", "--ambient", "0"}).code, 0);
+    EXPECT_EQ(scratch_.read("direct.png"), scratch_.read("open.png"));
+    refuses({"n.png", "-o", "x.png", "--occlusion", "none.png"}, "none.png", 3);
 }
 
 // The heights of a bake's normals are those of its height map.

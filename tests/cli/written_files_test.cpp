@@ -44,8 +44,11 @@ struct Step {
 };
 const std::vector<Step> kSteps = {
     {"bake", "h.png", "n.png",
-     R"(occlusion-out = "w/ao.png", sky-view-out = "w/sky.png", bent-out = "w/bent.png", occlusion-directions = 4)"},
-    {"integrate", "n.png", "h.png", R"(curvature-out = "w/c.png", curl-out = "w/curl.png")"},
+     R"(occlusion-out = "w/ao.png", sky-view-out = "w/sky.png", bent-out = "w/bent.png", )"
+     R"(horizon-out = "w/hor.png", horizon-directions = 4, occlusion-directions = 4)"},
+    {"integrate", "n.png", "h.png",
+     R"(curvature-out = "w/c.png", curl-out = "w/curl.png", occlusion-out = "w/ao.png", sky-view-out = "w/sky.png", )"
+     R"(bent-out = "w/bent.png", horizon-out = "w/hor.png", horizon-directions = 4, occlusion-directions = 4)"},
     {"mip", "n.png", "n.dds", R"(roughness-out = "w/r.dds")"},
     {"unpack", "t.png", "u.png", R"(swizzle = "rg", blue-out = "w/b.png", alpha-out = "w/a.png")"},
     {"unpack", "t.png", "u.png", R"(length-in = "occlusion", length-out = "w/l.png")"},

@@ -278,6 +278,9 @@ def test_occlusion_of_a_valley_follows_its_formula():
     maps = tex.occlusion(heights, wrap="clamp", directions=64, bent=True)
     assert set(maps) == {"occlusion", "bent"} and maps["bent"].shape == (129, 129, 3)
     assert abs(maps["occlusion"][64, 64] - 2**-0.5) < 0.005
+    alone = tex.occlusion(heights, wrap="clamp", occlusion=False, horizons=4)
+    assert set(alone) == {"horizons"} and alone["horizons"].shape == (4, 129, 129)
+    np.testing.assert_allclose(alone["horizons"][:, 64, 64], [2**-0.5, 0, 2**-0.5, 0], atol=0.005)
     with pytest.raises(ValueError, match="directions"):
         tex.occlusion(heights, directions=2)
 

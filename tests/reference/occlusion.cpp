@@ -28,8 +28,9 @@ double height_at(const HeightField& field, double x, double y) {
     return (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
 }
 
-// The tangent of the horizon in a direction; y points up.
-double horizon(const HeightField& field, int column, int row, double x, double y, double distance) {
+}  // namespace
+
+double horizon_of(const HeightField& field, int column, int row, double x, double y, double distance) {
     const Extent extent = field.height.extent();
     const double strength = static_cast<double>(field.bumpiness_x);
     const double tall = strength / static_cast<double>(field.bumpiness_y);
@@ -43,8 +44,6 @@ double horizon(const HeightField& field, int column, int row, double x, double y
     return tangent;
 }
 
-}  // namespace
-
 Sky sky_of(const HeightField& field, int column, int row, double p, double q, int directions, double distance) {
     constexpr int kAngles = 200;
     Sky sky;
@@ -52,7 +51,7 @@ Sky sky_of(const HeightField& field, int column, int row, double p, double q, in
     double sum[3] = {};
     for (int k = 0; k < directions; ++k) {
         const double turn = 2.0 * kPi * (k + 0.5) / directions, x = std::cos(turn), y = std::sin(turn);
-        const double start = std::atan(horizon(field, column, row, x, y, distance));
+        const double start = std::atan(horizon_of(field, column, row, x, y, distance));
         sky.sky_view += (1.0 - std::sin(std::max(start, 0.0))) / directions;
         const double step = (kPi / 2 - start) / kAngles;
         for (int a = 0; a < kAngles; ++a) {

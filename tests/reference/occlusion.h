@@ -17,4 +17,8 @@ struct Sky {
 // q (upwards) are those of the texel's normal. distance: as OcclusionOptions.
 Sky sky_of(const HeightField& field, int column, int row, double p, double q, int directions, double distance = 0.0);
 
+// The tangent of its horizon in the direction (x, y), a unit vector with y upwards, found in the same steps; at least 0
+// without a distance.
+double horizon_of(const HeightField& field, int column, int row, double x, double y, double distance = 0.0);
+
 }  // namespace tex::reference

@@ -118,6 +118,10 @@ std::vector<Verb> verbs() {
         {"unpack a picture", [](const Execution& e) { return error_of(tex::unpack(image, {}, e)); }},
         {"integrate", [](const Execution& e) { return error_of(tex::integrate(map, {}, e)); }},
         {"curvature", [](const Execution& e) { return error_of(tex::curvature(map, {}, e)); }},
+        {"occlusion",
+         [](const Execution& e) {
+             return error_of(tex::occlusion(field, {4, 0.0f, true, true, true, 4}, {}, e));
+         }},
         {"compare", [](const Execution& e) { return error_of(tex::compare(map, other, e)); }},
         {"make_tangents",
          [](const Execution& e) { return error_of(tex::make_tangents(part, tex::TangentMethod::mikktspace, 0, e)); },

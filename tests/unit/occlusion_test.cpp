@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <tex/bake.h>
@@ -163,6 +164,59 @@ TEST(Occlusion, OfRealMapsIsThatOfTheReference) {
     }
 }
 
+// The mean and the largest difference between the sines of horizons and those of the reference, at a texel of every so
+// many.
+std::pair<double, double> horizon_errors(const HeightField& field, const OcclusionOptions& options, int every) {
+    const auto maps = occlusion(field, options);
+    EXPECT_TRUE(maps);
+    double sum = 0.0, largest = 0.0;
+    int count = 0;
+    const Extent extent = field.height.extent();
+    for (int n = 0; n < options.horizons; ++n) {
+        const double turn = 2.0 * 3.14159265358979323846 * n / options.horizons;
+        for (int k = every / 2; k < extent.texels(); k += every, ++count) {
+            const int i = k % extent.width, j = k / extent.width;
+            const double is =
+                std::sin(std::atan(std::max(0.0, reference::horizon_of(field, i, j, std::cos(turn), std::sin(turn),
+                                                                       static_cast<double>(options.distance)))));
+            const double off = std::abs(static_cast<double>(maps->horizons[static_cast<std::size_t>(n)].at(i, j)) - is);
+            sum += off;
+            largest = std::max(largest, off);
+        }
+    }
+    return {sum / count, largest};
+}
+
+TEST(Occlusion, HorizonsAreThoseOfTheReference) {
+    for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+        HeightField field = rough_field({61, 47}, 4.0f, wrap);
+        const auto [mean, largest] = horizon_errors(field, {4, 0.0f, false, false, false, 8}, 41);
+        EXPECT_LT(mean, 0.004) << static_cast<int>(wrap);
+        EXPECT_LT(largest, 0.08);
+        field.bumpiness_y = 7.0f;
+        EXPECT_LT(horizon_errors(field, {4, 0.0f, false, false, false, 5}, 97).first, 0.01);
+        EXPECT_LT(horizon_errors(field, {4, 12.0f, false, false, false, 16}, 197).first, 0.01);
+    }
+}
+
+TEST(Occlusion, HorizonsLieOneBelowTheOtherAndHolesHaveNone) {
+    HeightField field = rough_field({50, 33}, 5.0f, Wrap::repeat);
+    field.height.at(20, 10) = kNoHeight;
+    const auto alone = occlusion(field, {16, 0.0f, false, false, false, 4});
+    ASSERT_TRUE(alone);
+    ASSERT_EQ(alone->horizons.size(), 4u);
+    EXPECT_TRUE(alone->occlusion.empty() && alone->sky_view.empty() && alone->bent.x.empty());
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Plane<float>& plane = alone->horizons[k];
+        EXPECT_EQ(plane.at(20, 10), 0.0f);
+        const float* const below = plane.row(0) + 33 * plane.stride();
+        EXPECT_TRUE(k == 3 || below == alone->horizons[k + 1].row(0));
+    }
+    const auto all = occlusion(field, {16, 0.0f, true, true, true, 4}), without = occlusion(field, kAllMaps);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(fields::same_bytes(all->horizons[k], alone->horizons[k]));
+    EXPECT_TRUE(without->horizons.empty());
+}
+
 TEST(Occlusion, RepeatsAsTheInsideOfATiledCopy) {
     const HeightField one = rough_field({45, 37}, 3.0f, Wrap::repeat);
     const HeightField nine = fields::field_of({135, 111}, 3.0f, Wrap::repeat, [&](int i, int j) {
@@ -233,6 +287,8 @@ TEST(Occlusion, RefusesWhatIsNoSurface) {
     EXPECT_NE(refusal(rough_field({8, 8}, 2.0f, Wrap::repeat), {3}).find("directions: must be from 4 to 1024"),
               std::string::npos);
     EXPECT_NE(refusal(rough_field({8, 8}, 2.0f, Wrap::repeat), {32, -1.0f}).find("distance"), std::string::npos);
+    EXPECT_NE(refusal(rough_field({8, 8}, 2.0f, Wrap::repeat), {32, 0.0f, true, false, false, 65}).find("horizons"),
+              std::string::npos);
     EXPECT_NE(
         refusal(fields::field_of({3, 3}, 1.0f, Wrap::clamp, [](int, int) { return kNoHeight; })).find("all heights"),
         std::string::npos);
@@ -247,11 +303,12 @@ TEST(Occlusion, SameBytesForEveryNumberOfThreadsAndEveryTarget) {
     for (const Wrap wrap : {Wrap::repeat, Wrap::mirror}) {
         HeightField field = rough_field({211, 90}, 6.0f, wrap);
         for (int i = 0; i < 9; ++i) field.height.at(50 + i, 40) = kNoHeight;
-        const OcclusionOptions options{20, 0.0f, true, true, true};
+        const OcclusionOptions options{20, 0.0f, true, true, true, 8};
         const auto hash = [&](const Execution& execution) {
             const auto maps = occlusion(field, options, {}, execution);
             return fields::hash_of(maps->occlusion) ^ (fields::hash_of(maps->sky_view) * 3) ^
-                   (fields::hash_of(maps->bent.x) * 5) ^ (fields::hash_of(maps->bent.z) * 7);
+                   (fields::hash_of(maps->bent.x) * 5) ^ (fields::hash_of(maps->bent.z) * 7) ^
+                   (fields::hash_of(maps->horizons[0]) * 11) ^ (fields::hash_of(maps->horizons[5]) * 13);
         };
         const std::uint64_t one = hash({});
         EXPECT_EQ(hash({2, {}}), one);

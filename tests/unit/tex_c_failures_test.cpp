@@ -79,6 +79,28 @@ TEST(TexCFailures, OfHeightsAndMeshes) {
         for (std::size_t k = 128; k < 192; ++k) eight.floats[k] = z;
         return tex_integrate(&map, &options, &plane, nullptr, scratch.data(), scratch.size());
     };
+    const auto hidden = [&](auto change, float height = 0.5f) {
+        tex_occlusion_options with = TEX_OCCLUSION_OPTIONS;
+        tex_occlusion_maps maps = {sizeof(tex_occlusion_maps), &plane, nullptr, nullptr, nullptr};
+        change(with, maps);
+        std::vector<float> heights(64, 0.5f);
+        heights[13] = height;
+        const tex_plane from = {heights.data(), 8, 8, 8};
+        std::vector<unsigned char> memory(tex_occlusion_size(8, 8, &with));
+        return tex_occlusion(&from, &with, &maps, memory.data(), memory.size());
+    };
+    const auto as_it_is = [](tex_occlusion_options&, tex_occlusion_maps&) {};
+    EXPECT_EQ(hidden(as_it_is), TEX_OK);
+    EXPECT_EQ(hidden(as_it_is, NAN), TEX_BAD_DATA);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.directions = 3; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.maps = 8; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.maps = 0; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.horizons = 3; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.bumpiness_x = -1.0f; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.distance = INFINITY; }), TEX_BAD_OPTION);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.maps = TEX_BENT; }), TEX_BAD_ARGUMENT);
+    EXPECT_EQ(hidden([](auto& o, auto&) { o.horizons = 8; }), TEX_BAD_ARGUMENT);
+    EXPECT_EQ(hidden([](auto&, auto& m) { m.size = 8; }), TEX_BAD_ARGUMENT);
     const float corners[] = {0, 0, 0, 1, 0, 0, 1, 1, 0}, normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
     const float uvs[] = {0, 0, 1, 0, 1, 1};
     std::uint32_t indices[] = {0, 1, 2};

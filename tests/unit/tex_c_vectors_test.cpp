@@ -140,6 +140,43 @@ TEST(TexCSurface, IntegratesAsTheVerbDoes) {
     }
 }
 
+TEST(TexCSurface, OcclusionIsThatOfTheVerb) {
+    for (const Extent extent : {Extent{1, 1}, Extent{16, 16}, Extent{37, 64}, Extent{257, 131}, Extent{300, 2}}) {
+        for (const int32_t wrap : {TEX_REPEAT, TEX_CLAMP, TEX_MIRROR}) {
+            SCOPED_TRACE(testing::Message() << extent.width << "x" << extent.height << " wrap " << wrap);
+            const tex::HeightField field = tex::fields::field_of(
+                extent, 6.0f, static_cast<tex::Wrap>(wrap),
+                [](int i, int j) { return std::sin(0.3 * i) * std::cos(0.21 * j) + 0.2 * tex::fields::noise(i, j); });
+            const auto wanted =
+                tex::occlusion(field, {12, 30.0f, true, true, true, 5}, {tex::GradientKernel::sobel5, 1.0f});
+            ASSERT_TRUE(wanted);
+            tex_occlusion_options options = TEX_OCCLUSION_OPTIONS;
+            options.kernel = TEX_KERNEL_SOBEL5;
+            options.bumpiness_x = options.bumpiness_y = 6.0f;
+            options.wrap_x = options.wrap_y = wrap;
+            options.maps = TEX_OCCLUSION | TEX_SKY_VIEW | TEX_BENT;
+            options.directions = 12;
+            options.distance = 30.0f;
+            options.horizons = 5;
+            CallerPlane heights(field.height), occlusion(extent), sky(extent);
+            CallerMap bent(extent);
+            std::vector<CallerPlane> horizons;
+            std::vector<tex_plane> places;
+            for (int k = 0; k < 5; ++k) horizons.emplace_back(extent);
+            for (CallerPlane& plane : horizons) places.push_back(plane.view());
+            const tex_plane from = heights.view(), to = occlusion.view(), to_sky = sky.view();
+            const tex_map to_bent = bent.view();
+            const tex_occlusion_maps maps = {sizeof(tex_occlusion_maps), &to, &to_sky, &to_bent, places.data()};
+            ScratchMemory scratch(tex_occlusion_size(extent.width, extent.height, &options));
+            ASSERT_EQ(tex_occlusion(&from, &options, &maps, scratch.data(), scratch.size()), TEX_OK);
+            occlusion.expect(wanted->occlusion, 0, extent.height);
+            sky.expect(wanted->sky_view, 0, extent.height);
+            bent.expect(wanted->bent);
+            for (std::size_t k = 0; k < 5; ++k) horizons[k].expect(wanted->horizons[k], 0, extent.height);
+        }
+    }
+}
+
 TEST(TexCSurface, AMapWithoutSlopesIsBadData) {
     CallerMap normals(tex::uniform_map({8, 8}, 0.0f, 0.6f, -0.8f));
     CallerPlane heights({8, 8});

@@ -148,6 +148,7 @@ void SceneOptions::add_material(Command& command) {
     Material& material = preview.material;
     add_file(command, albedo, "--albedo", "the albedo map, in sRGB; linear if it holds floats");
     add_color(command, material.albedo, "--tint", "the albedo, multiplied with its map");
+    add_file(command, occlusion, "--occlusion", "what reaches each texel of --ambient: 1 is open, 0 closed");
     add_color(command, material.specular, "--specular", "the colour of highlights");
     command.number(material.shininess, "--shininess", "S", range_of(&Material::shininess),
                    "the exponent of highlights");
@@ -226,7 +227,7 @@ float SceneOptions::parallax_on(const SampledMap& map) const {
 
 std::vector<std::string> SceneOptions::files() const {
     std::vector<std::string> names;
-    for (const std::string* name : {&albedo, &detail, &detail_albedo, &height}) {
+    for (const std::string* name : {&albedo, &occlusion, &detail, &detail_albedo, &height}) {
         if (!name->empty()) names.push_back(*name);
     }
     return names;
@@ -285,6 +286,13 @@ Result<SceneFiles> SceneOptions::read(Job& job, NormalsReader& normals, const Ex
         }
         *target = std::move(*image);
     }
+    if (!occlusion.empty()) {
+        auto image = read_image(occlusion, job.read_options);
+        if (!image) return image.error();
+        auto field = height_field(*image, {}, execution);
+        if (!field) return field.error().of(occlusion);
+        files.occlusion = std::move(field->height);
+    }
     if (!height.empty()) {
         auto image = read_image(height, job.read_options);
         if (!image) return image.error();
@@ -311,6 +319,7 @@ PreviewScene SceneFiles::with(const SampledMap& map) const {
     }
     if (albedo) scene.albedo = &*albedo;
     if (detail_albedo) scene.detail_albedo = &*detail_albedo;
+    if (!occlusion.empty()) scene.occlusion = &occlusion;
     if (!height.empty()) {
         scene.height = &height;
     } else if (!map.heights.empty()) {

@@ -51,7 +51,7 @@ struct Sampling {
 struct SceneFiles {
     std::optional<SampledMap> detail;
     std::optional<Image> albedo, detail_albedo;
-    Plane<float> height;
+    Plane<float> height, occlusion;
     const TangentSpace* mesh = nullptr;  // of maps that have none of their own; or none; must outlive this
 
     [[nodiscard]] PreviewScene with(const SampledMap& map) const;
@@ -59,8 +59,8 @@ struct SceneFiles {
 
 struct SceneOptions {
     PreviewOptions preview;
-    std::string albedo, detail, detail_albedo, height;  // paths, or empty
-    Deband deband = Deband::off;                        // of the heights of `height`
+    std::string albedo, occlusion, detail, detail_albedo, height;  // paths, or empty
+    Deband deband = Deband::off;                                   // of the heights of `height`
     std::optional<YIn> detail_y_in;
     bool parallax_of_map = false;  // as high as the normals show, instead of preview.parallax.amount
 

@@ -2,6 +2,7 @@
 
 #include "options/sky.h"
 
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -20,6 +21,12 @@ void SkyOptions::add(Command& command, const FileOptions& files) {
         .often(2, "write ambient occlusion of the heights");
     sky_view_.add(command, files, "--sky-view-out", "write the part of the sky above each texel: 1 is all of it");
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open");
+    horizon_.add(command, files, "--horizon-out",
+                 "write the sines of horizons, a slice for each direction, one below the other");
+    command
+        .option("--horizon-directions", "N", "the number of slices",
+                [this](const std::string& text) { horizons_ = parse_int(text, 4, 64); })
+        .preset = fmt::format("{}", horizons_);
     command
         .option("--occlusion-directions", "N", "measure the horizon in N directions",
                 [this](const std::string& text) {
@@ -35,24 +42,38 @@ void SkyOptions::add(Command& command, const FileOptions& files) {
 }
 
 void SkyOptions::amend(Task& task) const {
-    for (const MapOutput* const map : {&occlusion_, &sky_view_, &bent_}) map->amend(task);
+    for (const MapOutput* const map : {&occlusion_, &sky_view_, &bent_, &horizon_}) map->amend(task);
 }
 
-bool SkyOptions::is_given() const { return occlusion_.is_given() || sky_view_.is_given() || bent_.is_given(); }
+bool SkyOptions::is_given() const {
+    return occlusion_.is_given() || sky_view_.is_given() || bent_.is_given() || horizon_.is_given();
+}
+
+OcclusionOptions SkyOptions::options() const {
+    OcclusionOptions options = options_;
+    options.occlusion = occlusion_.is_given();
+    options.sky_view = sky_view_.is_given();
+    options.bent = bent_.is_given();
+    options.horizons = horizon_.is_given() ? horizons_ : 0;
+    return options;
+}
 
 void SkyOptions::apply(BakeFileOptions& options, bool is_extra) const {
-    if (!is_given() && !is_extra) return;
-    options.occlusion = options_;
-    options.occlusion->occlusion = occlusion_.is_given();
-    options.occlusion->sky_view = sky_view_.is_given();
-    options.occlusion->bent = bent_.is_given();
+    if (is_given() || is_extra) options.occlusion = this->options();
 }
 
 void SkyOptions::check(const Command& command, bool is_extra) const {
-    const auto idle = command.given_of({"--occlusion-directions", "--occlusion-distance"});
-    if (!idle.empty() && !is_given() && !is_extra)
-        throw UsageError(idle.front() +
-                         " needs --occlusion-out, --sky-view-out, --bent-out, or occlusion beside the normals");
+    if (command.given("--horizon-directions") && !horizon_.is_given())
+        throw UsageError("--horizon-directions needs --horizon-out");
+    const bool has_light = occlusion_.is_given() || sky_view_.is_given() || bent_.is_given() || is_extra;
+    if (command.given("--occlusion-directions") && !has_light)
+        throw UsageError(
+            "--occlusion-directions needs --occlusion-out, --sky-view-out, --bent-out, or occlusion beside the "
+            "normals");
+    if (command.given("--occlusion-distance") && !has_light && !horizon_.is_given())
+        throw UsageError(
+            "--occlusion-distance needs --occlusion-out, --sky-view-out, --bent-out, --horizon-out, or occlusion "
+            "beside the normals");
 }
 
 Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y) const {
@@ -62,10 +83,25 @@ Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y) const {
     if (sky_view_.is_given()) {
         if (auto done = write_plane(job, sky_view_, std::move(maps.sky_view), "sky_view"); !done) return done;
     }
-    if (!bent_.is_given()) return {};
+    if (bent_.is_given()) {
+        Json report;
+        if (auto done = bent_.write(job, std::move(maps.bent), y, report); !done) return done;
+        job.report["bent"] = std::move(report);
+    }
+    return horizon_.is_given() ? write_horizons(job, std::move(maps.horizons)) : Result<void>();
+}
+
+// The planes lie one below the other in memory, and become one picture.
+Result<void> SkyOptions::write_horizons(Job& job, std::vector<Plane<float>> horizons) const {
+    const auto all = std::make_shared<std::vector<Plane<float>>>(std::move(horizons));
+    const Extent slice = all->front().extent();
+    const Extent extent{slice.width, slice.height * static_cast<int>(all->size())};
+    Plane<float> picture(extent, all->front().stride(), std::shared_ptr<float>(all, all->front().row(0)));
     Json report;
-    if (auto done = bent_.write(job, std::move(maps.bent), y, report); !done) return done;
-    job.report["bent"] = std::move(report);
+    if (auto done = horizon_.write(job, std::move(picture), report); !done) return done;
+    report["directions"] = all->size();
+    report["extent"] = {extent.width, extent.height};
+    job.report["horizons"] = std::move(report);
     return {};
 }
 

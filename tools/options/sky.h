@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// sky.h: the option group of what heights hide: occlusion, sky view and bent normals beside the output.
+// sky.h: the option group of what heights hide: occlusion, sky view, bent normals and horizons beside the output.
 
 #pragma once
+
+#include <vector>
 
 #include <tex/pipeline.h>
 
@@ -11,7 +13,8 @@
 
 namespace tex::cli {
 
-// --occlusion-out, --sky-view-out, --bent-out, --occlusion-directions, --occlusion-distance.
+// --occlusion-out, --sky-view-out, --bent-out, --horizon-out, --horizon-directions, --occlusion-directions,
+// --occlusion-distance.
 class SkyOptions {
 public:
     void add(Command& command, const FileOptions& files);
@@ -19,7 +22,9 @@ public:
 
     // Whether a map is written.
     [[nodiscard]] bool is_given() const;
-    // Sets what is made. `is_extra`: occlusion goes beside the normals, too.
+    // What is made.
+    [[nodiscard]] OcclusionOptions options() const;
+    // Sets it. `is_extra`: occlusion goes beside the normals, too.
     void apply(BakeFileOptions& options, bool is_extra) const;
     // Throws UsageError if an option has no effect.
     void check(const Command& command, bool is_extra) const;
@@ -30,9 +35,11 @@ public:
 private:
     [[nodiscard]] static Result<void> write_plane(Job& job, const MapOutput& output, Plane<float> values,
                                                   const char* key);
+    [[nodiscard]] Result<void> write_horizons(Job& job, std::vector<Plane<float>> horizons) const;
 
     OcclusionOptions options_;
-    MapOutput occlusion_, sky_view_, bent_;
+    int horizons_ = 8;
+    MapOutput occlusion_, sky_view_, bent_, horizon_;
 };
 
 }  // namespace tex::cli

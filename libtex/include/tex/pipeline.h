@@ -154,7 +154,8 @@ struct BakeFileReport {
 //   an interlaced PNG   all rows, as they are decoded
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
 //   deband              all heights, and what deband() needs besides: 13 bytes a texel
-//   occlusion           all heights, the maps, and what occlusion() needs besides: 28 bytes a texel and the maps
+//   occlusion           all heights, the maps, and what occlusion() needs besides: 20 bytes a texel and the maps; 32
+//                       if texels are filled
 //   TIFF, JPEG out      all packed texels: the reader process encodes whole pictures
 //   EXR out             compressed tiles of smaller levels, until the base level is done: up to 4 MB, and the rest in a
 //                       file without a name in the folder of the output

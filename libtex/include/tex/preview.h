@@ -220,9 +220,10 @@ struct PreviewScene {
     const MipChain* map = nullptr;     // sampled from its own levels; a single level is sampled without mip-mapping
     const MipChain* detail = nullptr;  // or none
     const Image* albedo = nullptr;     // or none: R, G, B or one grey plane, linear values; mip-mapped by a box filter
-    const Image* detail_albedo = nullptr;  // or none; the same, sampled at the place of the detail
-    const Plane<float>* height = nullptr;  // or none; mip-mapped by a box filter; integrate() finds those of a map
-    float white = 1.0f;                    // the height that counts as 1 in Parallax, above 0
+    const Image* detail_albedo = nullptr;     // or none; the same, sampled at the place of the detail
+    const Plane<float>* height = nullptr;     // or none; mip-mapped by a box filter; integrate() finds those of a map
+    float white = 1.0f;                       // the height that counts as 1 in Parallax, above 0
+    const Plane<float>* occlusion = nullptr;  // or none: 1 is open, 0 closed; mip-mapped by a box filter
 
     // None, or the mesh that carries the map, instead of PreviewOptions::shape. It must outlive the call.
     const TangentSpace* mesh = nullptr;
@@ -243,7 +244,7 @@ struct PreviewScene {
 //     a         = 1 for directional light, 1 / distance for a point light
 //     R         = 2 (N.L) N - L
 //     specular  = 0 if N.L < 0, else max(0, R.V)^shininess  (blinn: max(0, N.normalize(L + V))^shininess)
-//     color     = ambient albedo + a light (albedo max(0, N.L) + specular_color specular)
+//     color     = ambient occlusion albedo + a light (albedo max(0, N.L) + specular_color specular)
 //
 // Filtering is trilinear between the map's levels. The footprint of the pixel in the texture (Heckbert 1989) comes from
 // the neighbouring view rays, with up to `anisotropy` trilinear samples along its longer axis

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include <tex/bake.h>
 #include <tex/height.h>
@@ -148,7 +149,7 @@ struct Curvature {
 
 // -- occlusion -----------------------------------------------------------------------------------------------------
 //
-// How much of the sky each texel of a height field sees: ambient occlusion, sky view and bent normals.
+// How much of the sky each texel of a height field sees: ambient occlusion, sky view, bent normals and horizons.
 
 struct OcclusionOptions {
     // In how many directions the horizon is measured, from 4 to 1024: see occlusion() for the error.
@@ -157,6 +158,8 @@ struct OcclusionOptions {
     // farther counts less, and what is at this distance only if it rises steeper than 45 degrees.
     float distance = 0.0f;
     bool occlusion = true, sky_view = false, bent = false;  // the maps that are made
+    // In how many directions the horizons are made, too: from 4 to 64, or 0 for none.
+    int horizons = 0;
 };
 
 // Whether every option is in its range. occlusion() calls it first. Errors: bad_option, which names the option.
@@ -167,6 +170,8 @@ struct OcclusionMaps {
     Plane<float> occlusion;  // 0 to 1
     Plane<float> sky_view;   // 0 to 1
     NormalMap bent;
+    // 0 to 1. In memory they lie one below the other: the rows of each follow those of the one before.
+    std::vector<Plane<float>> horizons;
 };
 
 // What the surface of a height field hides from its texels. The surface is the one whose normals bake(field, bake)
@@ -184,14 +189,18 @@ struct OcclusionMaps {
 //                 hemispherical bowl 1 - sqrt(1/2), on a plane 1.
 //     bent        the mean of the same directions as in occlusion, with the same weights, as a unit vector; n if no
 //                 direction is open. This is what transfer() estimates by rays.
+//     horizons    sin(max(0, h_k)) in the direction k / N of a turn, from x (to the right) towards y (upwards), for
+//                 N = options.horizons, whatever options.directions is: light from a direction w of this azimuth
+//                 reaches the texel if w.z is greater (Max: Horizon Mapping, 1988; Sloan, Cohen: Interactive Horizon
+//                 Mapping, 2000). Between two directions a shader interpolates.
 //
 // With options.distance D, T_k is the greatest value of rise / distance - distance / D. Nothing ends abruptly, and
 // nothing whose rise is below distance^2 / D counts.
 //
 // Beyond the border lies, with Wrap::repeat and Wrap::mirror, what these say; with Wrap::clamp the ground goes on as
 // high as its border. As much of it counts as the map is long, and at least 256 texels. Heights that are NaN are holes:
-// they hide nothing, and their texels become 1, 1 and (0, 0, 1). On the ground (HeightField::ground), horizons have the
-// strength of the middle row; normals have that of their own.
+// they hide nothing, and their texels become 1, 1, (0, 0, 1) and horizons of 0. On the ground (HeightField::ground),
+// horizons have the strength of the middle row; normals have that of their own.
 //
 // Method: the horizons of all texels of a line in one pass, which keeps the upper convex hull of what lies behind
 // (Timonen, Westerholm: Scalable Height Field Self-Shadowing, 2010; Barrett: Computing Skylight for 2D Height Fields by
@@ -202,12 +211,11 @@ struct OcclusionMaps {
 // the mean over rough maps (tests/bench/OCCLUSION.md): 0.0011 with 16 directions, 0.0007 with 32; of sky view twice
 // that.
 //
-// Memory, besides the field and the maps: 20 bytes for each texel, and for each thread 2100 bytes for each row or
-// column of the longer side, of which it touches little.
+// Memory, besides the field and the maps: 16 bytes for each texel, 8 more if there are holes, and for each thread 2100
+// bytes for each row or column of the longer side, of which it touches little.
 //
-// Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite, or it
-// is
-//                     0 or below in one direction and not in the other; as validate(options) and validate(bake)
+// Errors: bad_option  the field has no texels, or more than kMaxExtent in a direction; bumpiness is not finite, or
+//                     has another sign in one direction than in the other; as validate(options) and validate(bake)
 //         bad_data    a height is infinite; all are NaN
 //         out_of_memory, cancelled
 // The same bytes for every number of threads, processor and compiler.

@@ -390,10 +390,10 @@ TEX_C_API int32_t tex_blend(const tex_map* base, const tex_map* detail, const te
 // The angles in degrees, 0 to 180, between rows [first, end) of two maps of the same extent.
 TEX_C_API int32_t tex_angles(const tex_map* a, const tex_map* b, int32_t first, int32_t end, const tex_plane* degrees);
 
-// ---- heights: deband and integrate (height.h, surface.h) --------------------------------------------------------
+// ---- heights: deband, integrate, occlusion (height.h, surface.h) ------------------------------------------------
 
-// Each height depends on all others, so these two take whole planes, run on one thread, and need scratch that is larger
-// than the plane: about 16 bytes for each texel to deband, 30 to integrate.
+// Each texel depends on all others, so these three take whole planes, run on one thread, and need scratch that is
+// larger than the plane: about 16 bytes for each texel to deband, 30 to integrate, 20 to 50 for occlusion.
 
 typedef struct tex_deband_report {
     uint32_t size;
@@ -439,6 +439,43 @@ TEX_C_API size_t tex_integrate_size(int32_t width, int32_t height, const tex_int
 // so steep that heights do not fit floats.
 TEX_C_API int32_t tex_integrate(const tex_map* map, const tex_integrate_options* options, const tex_plane* heights,
                                 tex_integrate_report* report, void* scratch, size_t scratch_size);
+
+// What tex_occlusion() makes; the numbers are added up.
+enum tex_occlusion_map { TEX_OCCLUSION = 1, TEX_SKY_VIEW = 2, TEX_BENT = 4 };
+
+typedef struct tex_occlusion_options {
+    uint32_t size;
+    int32_t kernel;  // tex_kernel: this and the next five as in tex_bake_options
+    float gaussian_sigma;
+    float bumpiness_x, bumpiness_y;  // both above 0, both below, or both 0
+    int32_t wrap_x, wrap_y;
+    int32_t maps;        // of tex_occlusion_map
+    int32_t directions;  // in which the horizon is measured, from 4 to 1024
+    float distance;      // texels; 0: everything counts, however far away
+    int32_t horizons;    // the number of planes of horizons, from 4 to 64; or 0
+} tex_occlusion_options;
+#define TEX_OCCLUSION_OPTIONS                                                                                       \
+    {                                                                                                               \
+        sizeof(tex_occlusion_options), TEX_KERNEL_CENTRAL, 1.0f, 1.0f, 1.0f, TEX_REPEAT, TEX_REPEAT, TEX_OCCLUSION, \
+            32, 0.0f, 0                                                                                             \
+    }
+
+typedef struct tex_occlusion_maps {
+    uint32_t size;
+    const tex_plane* occlusion;  // pointers to what is not made are not read
+    const tex_plane* sky_view;
+    const tex_map* bent;
+    const tex_plane* horizons;  // an array of options->horizons
+} tex_occlusion_maps;
+
+TEX_C_API size_t tex_occlusion_size(int32_t width, int32_t height, const tex_occlusion_options* options);
+
+// What the surface of heights hides from its texels: see occlusion() in surface.h. Planes and maps have the extent of
+// the heights.
+//
+// Fails with TEX_BAD_DATA: a height is not finite.
+TEX_C_API int32_t tex_occlusion(const tex_plane* heights, const tex_occlusion_options* options,
+                                const tex_occlusion_maps* out, void* scratch, size_t scratch_size);
 
 // ---- tangents (mesh.h) --------------------------------------------------------------------------------------------
 

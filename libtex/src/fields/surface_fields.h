@@ -33,6 +33,7 @@ void each_field(O& o, F& f) {
     f("occlusion", o.occlusion);
     f("sky_view", o.sky_view);
     f("bent", o.bent);
+    f("horizons", o.horizons, Range{.least = 4.0, .greatest = 64.0, .or_zero = true});
 }
 
 }  // namespace tex::inline v1

@@ -19,11 +19,10 @@ inline constexpr int kBandLines = 1 << kBandBits;
 // The height of a hole: so low that nothing beside it can see it. Heights are at most kMaxSlope.
 inline constexpr float kHoleHeight = -1e30f;
 
-// The hulls of a band. Entry k of line i of the stacks is at [kBandLines k + i]; the two nearest points of each hull
-// are also in `top` and `second`.
+// The hulls of a band. Entry k of line i of the stacks, height and row, is at [2 (kBandLines k + i)]; the two nearest
+// points of each hull are also in `top` and `second`.
 struct HullBand {
-    float* heights;  // stacks, with room for as many points as are pushed
-    float* rows;
+    float* points;  // stacks, with room for as many points as are pushed
     alignas(64) std::int32_t counts[kBandLines];
     alignas(64) float top_heights[kBandLines];
     alignas(64) float top_rows[kBandLines];
@@ -72,16 +71,17 @@ struct SkyRow {
     float* x;
     float* y;
     float* z;
+    float* horizon;  // not a sum: the sine of the last horizon, or 0 below the level
 };
 
-// Adds the light above the horizons of `count` texels with the slopes p (to the right) and q (upwards), which only
-// sky.sky does without. Reads and writes no other texels.
+// Adds the light above the horizons of `count` texels with the slopes p (to the right) and q (upwards), which
+// sky.sky and sky.horizon do without. Reads and writes no other texels.
 void add_sky(const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
              const SkyRow& sky);
 
 // Turns sums over `directions` into occlusion, sky view and unit vectors; the vector of a texel that sees nothing
-// becomes its normal. Holes become 1, 1 and (0, 0, 1). Rows may be written up to a whole vector (64 bytes) past their
-// last texel.
+// becomes its normal. Holes become 1, 1, (0, 0, 1) and 0. Rows may be written up to a whole vector (64 bytes) past
+// their last texel.
 void finish_sky(const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky);
 
 // What scale_heights() met.

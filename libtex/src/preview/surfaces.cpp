@@ -56,12 +56,19 @@ Result<Textures> Textures::prepare(const PreviewScene& scene, const PreviewOptio
         !done) {
         return done.error();
     }
-    if (scene.height != nullptr) {
-        auto pyramid = Pyramid::build({scene.height->view()}, part_of(execution, 0.8, 1.0));
-        if (!pyramid) return pyramid.error();
-        textures.height_ = std::move(*pyramid);
-        textures.height = textures.height_->sampler(options.wrap_x, options.wrap_y);
-    }
+    const auto values = [&](const Plane<float>* plane, std::optional<Pyramid>& pyramid, Sampler& sampler,
+                            const Execution& step) -> Result<void> {
+        if (plane == nullptr) return {};
+        auto built = Pyramid::build({plane->view()}, step);
+        if (!built) return built.error();
+        pyramid = std::move(*built);
+        sampler = pyramid->sampler(options.wrap_x, options.wrap_y);
+        return {};
+    };
+    if (auto done = values(scene.height, textures.height_, textures.height, part_of(execution, 0.8, 0.9)); !done)
+        return done.error();
+    auto done = values(scene.occlusion, textures.occlusion_, textures.occlusion, part_of(execution, 0.9, 1.0));
+    if (!done) return done.error();
     return textures;
 }
 
@@ -74,7 +81,11 @@ LitSurface::LitSurface(const Textures& textures, const PreviewScene& scene, cons
 Vec3 LitSurface::linear_light(const Hit& hit, const Footprint& footprint) const {
     const Hit seen = displaced(hit, footprint);
     const Vec3 view = normalize(stage_.view.towards_viewer(hit.point));
-    return shade(with_, hit.point, normal(seen, footprint), view, albedo(seen.uv, footprint));
+    if (textures_.occlusion.empty())
+        return shade(with_, hit.point, normal(seen, footprint), view, albedo(seen.uv, footprint));
+    Illumination occluded = with_;
+    occluded.ambient = with_.ambient * sample(textures_.occlusion, seen.uv, footprint, options_.anisotropy)[0];
+    return shade(occluded, hit.point, normal(seen, footprint), view, albedo(seen.uv, footprint));
 }
 
 Vec3 LitSurface::normal(const Hit& hit, const Footprint& footprint) const {

@@ -21,10 +21,10 @@ public:
     static Result<Textures> prepare(const PreviewScene& scene, const PreviewOptions& options,
                                     const Execution& execution);
 
-    Sampler map, detail, albedo, detail_albedo, height;  // empty if there is none
+    Sampler map, detail, albedo, detail_albedo, height, occlusion;  // empty if there is none
 
 private:
-    std::optional<Pyramid> albedo_, detail_albedo_, height_;
+    std::optional<Pyramid> albedo_, detail_albedo_, height_, occlusion_;
 };
 
 // Whether z of the map is reconstructed: the texture has none, or the mesh's decoder ignores it.

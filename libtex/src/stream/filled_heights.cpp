@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "rows/height_bytes.h"
@@ -77,7 +78,17 @@ Result<std::unique_ptr<RowSource>> fill_heights(RowSource& rows, const std::stri
         deband_heights(heights, options.wrap_x, options.wrap_y, options.deband, execution, {read_to, debanded_to});
     if (!smooth) return smooth.error();
     deband = *smooth;
-    if (with_holes != nullptr) *with_holes = heights.clone();
+    if (with_holes != nullptr && counts.invalid == 0) {
+        // Nobody changes them any more: both are the same memory.
+        const auto shared = std::make_shared<Plane<float>>(std::move(heights));
+        const auto rows_of = [&] {
+            return Plane<float>(extent, shared->stride(), std::shared_ptr<float>(shared, shared->row(0)));
+        };
+        *with_holes = rows_of();
+        heights = rows_of();
+    } else if (with_holes != nullptr) {
+        *with_holes = heights.clone();
+    }
     if (counts.invalid > 0) {
         const auto filled =
             fill_from_nearest(heights.view(), options.wrap_x, options.wrap_y, execution, {debanded_to, 1.0});

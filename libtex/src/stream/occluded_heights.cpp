@@ -25,7 +25,7 @@ bool is_extra(const ExtraInputs& inputs) {
 // Blurs the heights as the bake does, which sees holes filled; the holes stay.
 Result<void> blur(Plane<float>& heights, const HeightFieldHead& head, double sigma, const Execution& execution) {
     const Extent extent = heights.extent();
-    Plane<float> solid = heights.clone();
+    Plane<float> solid = heights.clone();  // the heights may be those that will be baked
     const auto is_hole = [](float height) { return std::isnan(height); };
     bool has_holes = false;
     for (int j = 0; j < extent.height; ++j) {
@@ -40,6 +40,10 @@ Result<void> blur(Plane<float>& heights, const HeightFieldHead& head, double sig
     Plane<float> across(extent);
     blur_across(solid.view(), weights, head.wrap_x, 0, extent.height, across);
     blur_down(across.view(), weights, head.wrap_y, 0, extent.height, solid);
+    if (!has_holes) {
+        heights = std::move(solid);
+        return {};
+    }
     for (int j = 0; j < extent.height; ++j) {
         float* const row = heights.row(j);
         std::transform(row, row + extent.width, solid.row(j), row,

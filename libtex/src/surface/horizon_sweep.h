@@ -8,11 +8,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include <tex/types.h>
 
 #include "kernels/horizon.h"
+#include "memory/lent_memory.h"
 
 namespace tex::inline v1 {
 
@@ -27,7 +27,7 @@ struct HorizonField {
 
 // What is summed over directions, in the same orientation; planes that are not wanted are empty.
 struct SkySums {
-    Plane<float> occlusion, sky, x, y, z;
+    Plane<float> occlusion, sky, x, y, z, horizon;
 
     [[nodiscard]] SkyRow at(int row, int column);
 };
@@ -55,7 +55,7 @@ public:
 
     private:
         friend class HorizonSweep;
-        std::unique_ptr<float[]> floats_;  // uninitialised: most of it is never touched
+        Plane<float> points_;  // most of it is never touched
         HullBand hulls_;
     };
 
@@ -65,15 +65,16 @@ public:
 private:
     class Band;
 
-    // The column of line 0 in step s, rounded.
-    [[nodiscard]] int shift_at(int step) const;
+    // The column of line 0 in a step, rounded.
+    [[nodiscard]] int shift_at(int step) const { return shifts_[static_cast<std::size_t>(step + run_in_)]; }
     [[nodiscard]] int row_at(int step) const;
 
     const HorizonField& field_;
     const SweepDirection& direction_;
     SkySums& sums_;
     bool repeats_;
-    int first_line_ = 0, lines_ = 0, bands_ = 0;
+    int first_line_ = 0, lines_ = 0, bands_ = 0, run_in_ = 0;
+    WorkingVector<int> shifts_;  // of all steps
 };
 
 }  // namespace tex::inline v1

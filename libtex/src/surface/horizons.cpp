@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
-#include <vector>
 
 #include "kernels/slopes.h"
+#include "memory/lent_memory.h"
 #include "rows/math.h"
 #include "surface/horizon_sweep.h"
 #include "threads/pool.h"
@@ -95,19 +97,30 @@ public:
     Sky(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution, ProgressSpan span)
         : source_(source), options_(options), execution_(execution), span_(span), extent_(source.heights.extent()),
           rows_(source, options.occlusion || options.bent) {
-        for (int k = 0; k < options.directions; ++k) add_direction(k);
+        for (auto& of_orientation : directions_)
+            of_orientation.reserve(static_cast<std::size_t>(options.directions + options.horizons));
+        // The light is that of the middles of equal parts of a turn; horizons lie at their ends.
+        if (options.occlusion || options.sky_view || options.bent) {
+            for (int k = 0; k < options.directions; ++k) add_direction((k + 0.5) / options.directions, kLight);
+        }
+        for (int k = 0; k < options.horizons; ++k) add_direction(static_cast<double>(k) / options.horizons, k);
+        if (execution.threads == 1)
+            alone_.emplace(extent_);
+        else
+            pool_.emplace();
     }
 
-    Result<OcclusionMaps> make() {
+    Result<SkyMaps> make() {
+        SkyMaps maps;
+        if (options_.horizons > 0) maps.horizons = Plane<float>({extent_.width, extent_.height * options_.horizons});
         SkySums sums = room_for(turned(extent_));
-        if (auto done = sweep_all(true, sums); !done) return done.error();
+        if (auto done = sweep_all(true, sums, maps.horizons); !done) return done.error();
         for (Plane<float>* const plane : {&sums.occlusion, &sums.sky, &sums.x, &sums.y, &sums.z}) {
             auto straight = turned_plane(std::move(*plane), execution_);
             if (!straight) return straight.error();
             *plane = std::move(*straight);
         }
-        if (auto done = sweep_all(false, sums); !done) return done.error();
-        OcclusionMaps maps;
+        if (auto done = sweep_all(false, sums, maps.horizons); !done) return done.error();
         maps.occlusion = std::move(sums.occlusion);
         maps.sky_view = std::move(sums.sky);
         maps.bent.x = std::move(sums.x);
@@ -117,9 +130,15 @@ public:
     }
 
 private:
-    // Directions are the middles of equal parts of a turn. A texel is 1 wide and `tall` high.
-    void add_direction(int k) {
-        const double angle = 2.0 * math::kPi * (k + 0.5) / options_.directions;
+    static constexpr int kLight = -1;
+    struct Direction {
+        SweepDirection sweep;
+        int horizon;  // which one; kLight: none
+    };
+
+    // A texel is 1 wide and `tall` high.
+    void add_direction(double turn, int horizon) {
+        const double angle = 2.0 * math::kPi * turn;
         const double x = math::cos(angle), y = math::sin(angle);
         const double ratio = source_.strength.y == 0.0f
                                  ? 1.0
@@ -136,7 +155,7 @@ private:
         direction.upwards = major > 0.0;
         if (options_.distance > 0.0f)
             direction.bend = static_cast<float>(1.0 / (rows * rows * static_cast<double>(options_.distance)));
-        directions_[is_turned ? 1 : 0].push_back(direction);
+        directions_[is_turned ? 1 : 0].push_back({direction, horizon});
     }
 
     [[nodiscard]] SkySums room_for(Extent extent) const {
@@ -171,19 +190,20 @@ private:
     }
 
     // The directions of one orientation; after those that are not turned, the sums are finished.
-    Result<void> sweep_all(bool is_turned, SkySums& sums) {
+    Result<void> sweep_all(bool is_turned, SkySums& sums, Plane<float>& horizons) {
         const Result<HorizonField> made = field(is_turned);
         if (!made) return made.error();
-        for (const SweepDirection& direction : directions_[is_turned ? 1 : 0]) {
-            const HorizonSweep sweep(*made, direction, sums);
-            const auto body = [&](int begin, int end) {
-                const auto stacks = stacks_.take([&] { return std::make_unique<HorizonSweep::Stacks>(extent_); });
-                for (int band = begin; band < end; ++band) sweep.sweep(band, *stacks);
-            };
-            const auto at = [&](int done) { return span_.from + (span_.to - span_.from) * done / options_.directions; };
-            const ProgressSpan part{at(done_), at(done_ + 1)};
-            ++done_;
-            if (auto done = parallel_for(execution_, sweep.bands(), 1, body, part); !done) return done;
+        for (const Direction& direction : directions_[is_turned ? 1 : 0]) {
+            if (direction.horizon == kLight) {
+                if (auto done = sweep(*made, direction.sweep, sums); !done) return done;
+                continue;
+            }
+            SkySums one;
+            one.horizon = is_turned ? Plane<float>(made->extent()) : slice(horizons, direction.horizon);
+            if (auto done = sweep(*made, direction.sweep, one); !done) return done;
+            if (!is_turned) continue;
+            Plane<float> straight = slice(horizons, direction.horizon);
+            turn(one.horizon, one.horizon.extent().height, 0, straight);
         }
         if (is_turned) return {};
         const auto finish = [&](int begin, int end) {
@@ -191,10 +211,38 @@ private:
                 const auto slopes = [&](const Plane<float>& plane) { return plane.empty() ? nullptr : plane.row(j); };
                 finish_sky(made->heights.row(j), slopes(made->p), slopes(made->q), options_.directions, extent_.width,
                            sums.at(j, 0));
+                SkyRow horizon{};
+                for (int k = 0; k < options_.horizons; ++k) {
+                    horizon.horizon = horizons.row(k * extent_.height + j);
+                    finish_sky(made->heights.row(j), nullptr, nullptr, 1, extent_.width, horizon);
+                }
             }
         };
         const Execution silent = execution_.quiet();
         return parallel_for(silent, extent_.height, rows_per_piece(extent_), finish);
+    }
+
+    Result<void> sweep(const HorizonField& field, const SweepDirection& direction, SkySums& sums) {
+        const HorizonSweep sweep(field, direction, sums);
+        const auto body = [&](int begin, int end) {
+            if (alone_) {
+                for (int band = begin; band < end; ++band) sweep.sweep(band, *alone_);
+                return;
+            }
+            const auto stacks = pool_->take([&] { return std::make_unique<HorizonSweep::Stacks>(extent_); });
+            for (int band = begin; band < end; ++band) sweep.sweep(band, *stacks);
+        };
+        const auto all = static_cast<double>(directions_[0].size() + directions_[1].size());
+        const auto at = [&](int done) { return span_.from + (span_.to - span_.from) * done / all; };
+        const ProgressSpan part{at(done_), at(done_ + 1)};
+        ++done_;
+        return parallel_for(execution_, sweep.bands(), 1, body, part);
+    }
+
+    // The rows of horizon k.
+    [[nodiscard]] Plane<float> slice(Plane<float>& horizons, int k) const {
+        return {extent_, horizons.stride(),
+                std::shared_ptr<float>(std::shared_ptr<float>(), horizons.row(k * extent_.height))};
     }
 
     const HorizonSource& source_;
@@ -203,15 +251,16 @@ private:
     const ProgressSpan span_;
     const Extent extent_;
     const FieldRows rows_;
-    std::vector<SweepDirection> directions_[2];  // not turned, turned
-    Pool<HorizonSweep::Stacks> stacks_;
+    WorkingVector<Direction> directions_[2];     // not turned, turned
+    std::optional<HorizonSweep::Stacks> alone_;  // of the only thread, which makes no others
+    std::optional<Pool<HorizonSweep::Stacks>> pool_;
     int done_ = 0;
 };
 
 }  // namespace
 
-Result<OcclusionMaps> sky_of(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution,
-                             ProgressSpan span) {
+Result<SkyMaps> sky_of(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution,
+                       ProgressSpan span) {
     return Sky(source, options, execution, span).make();
 }
 

@@ -20,8 +20,16 @@ struct HorizonSource {
     Strength strength;  // of horizons; both numbers are 0, or above 0, or below
 };
 
-// Errors: cancelled, out_of_memory. May throw std::bad_alloc.
-Result<OcclusionMaps> sky_of(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution,
-                             ProgressSpan span);
+// What OcclusionMaps holds; the planes of horizons lie one below the other.
+struct SkyMaps {
+    Plane<float> occlusion, sky_view;
+    NormalMap bent;
+    Plane<float> horizons;
+};
+
+// Errors: cancelled, out_of_memory. May throw std::bad_alloc. With execution.threads == 1, all memory is that of planes
+// and WorkingVectors.
+Result<SkyMaps> sky_of(const HorizonSource& source, const OcclusionOptions& options, const Execution& execution,
+                       ProgressSpan span);
 
 }  // namespace tex::inline v1

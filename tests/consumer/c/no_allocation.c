@@ -47,6 +47,15 @@ static void bakes_and_levels(void) {
         const tex_plane surface = {planes[10], kWidth, kWidth, kHeight};
         EXPECT_NOTHING(tex_integrate(&map, &back, &surface, NULL, scratch, kScratch))
     }
+    tex_occlusion_options hidden = TEX_OCCLUSION_OPTIONS;
+    hidden.maps = TEX_OCCLUSION | TEX_SKY_VIEW | TEX_BENT;
+    hidden.directions = 8;
+    hidden.horizons = 4;
+    const tex_plane occlusion = {planes[3], kWidth, kWidth, kHeight}, sky = {planes[4], kWidth, kWidth, kHeight};
+    tex_plane horizons[4];
+    for (int k = 0; k < 4; ++k) horizons[k] = (tex_plane){planes[5 + k], kWidth, kWidth, kHeight};
+    const tex_occlusion_maps maps = {sizeof maps, &occlusion, &sky, &map, horizons};
+    EXPECT_NOTHING(tex_occlusion(&heights, &hidden, &maps, scratch, kScratch))
     for (int filter = TEX_FILTER_BOX; filter <= TEX_FILTER_LANCZOS3; ++filter) {
         tex_mip_options options = TEX_MIP_OPTIONS;
         options.filter = filter;
