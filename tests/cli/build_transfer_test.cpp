@@ -94,6 +94,40 @@ TEST_F(BuildTransfer, RefusesWhatCannotBe) {
     fails(2, "transfer must be the only step");
 }
 
+// The name says that the output is the model.
+TEST_F(BuildTransfer, MakesModels) {
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"meshes/crate_low.glb\"\nname = \"out/{stem:-_low}_lod.glb\"\n"
+                   "steps = [ { transfer = { extent = \"64\", high = \"{dir}/{stem:-_low}_high.glb\" } } ]\n");
+    const Ran made = build();
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(done_.at("meshes/crate_low.glb"), "made");
+    const Ran hand =
+        run(scratch_, "transfer-normals",
+            {"meshes/crate_low.glb", "meshes/crate_high.glb", "-o", "hand.glb", "--extent", "64", "--no-sync"});
+    ASSERT_EQ(hand.code, 0) << hand.err;
+    EXPECT_EQ(scratch_.read("out/crate_lod.glb"), scratch_.read("hand.glb"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_.at("meshes/crate_low.glb"), "current");
+    // Other commands that write models do the same.
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"out/*_lod.glb\"\nname = \"packed/{stem}.glb\"\n"
+                   "steps = [ { pack = { y = \"down\" } } ]\n");
+    const Ran packed = build();
+    ASSERT_EQ(packed.code, 0) << packed.err;
+    ASSERT_EQ(
+        run(scratch_, "pack-normals", {"hand.glb", "-o", "hand2.glb", "--y", "down", "--no-sync", "--quiet"}).code, 0);
+    EXPECT_EQ(scratch_.read("packed/crate_lod.glb"), scratch_.read("hand2.glb"));
+    // A model with files beside it would have outputs that the manifest does not know.
+    fs::create_directories(scratch_.path("beside"));
+    scratch_.write("beside/n.png", "a picture");
+    scratch_.write("beside/a.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"n.png"}]})");
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"beside/a.gltf\"\nname = \"packed/{stem}.gltf\"\n"
+                   "steps = [ { pack = { y = \"down\" } } ]\n");
+    fails(2, "a rule writes models as .glb");
+}
+
 TEST_F(BuildTransfer, FailsIfMoreIsMissedThanTheLimit) {
     write_manifest("meshes/crate_low.glb",
                    "high = \"{dir}/{stem:-_low}_high.glb\", front = \"1%\", back = 0.02, max-missed = 0.5");
