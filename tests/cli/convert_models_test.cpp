@@ -117,6 +117,21 @@ TEST_F(ConvertedModels, GetTangentsAndKeepTheirMaps) {
     EXPECT_EQ(difference("right.glb", "out.glb", 0), 0.0);
 }
 
+TEST_F(ConvertedModels, CheckNormalsPrintsTheCommand) {
+    write_model_of("bare.glb", "", {});
+    write_model_of("turned.glb", "", 1.2f);
+    const std::string bare = go("check-normals bare.glb --quiet").out;
+    EXPECT_NE(bare.find("fix: convert-normals bare.glb --tangents mikktspace -o FIXED.glb"), std::string::npos) << bare;
+    const std::string turned = go("check-normals turned.glb --quiet").out;
+    EXPECT_NE(turned.find("N705"), std::string::npos) << turned;
+    const std::string command = "convert-normals turned.glb --material A --tangents mikktspace -o FIXED.glb";
+    EXPECT_NE(turned.find("fix: " + command), std::string::npos) << turned;
+    does(command + "; convert-normals FIXED.glb --material B --tangents mikktspace -o both.glb");
+    const std::string fixed = go("check-normals both.glb --quiet").out;
+    EXPECT_NE(fixed.find("both.glb: A"), std::string::npos) << fixed;
+    for (const char* const id : {"N701", "N705", "N706"}) EXPECT_EQ(fixed.find(id), std::string::npos) << fixed;
+}
+
 // Maps that were made for the tangents of the file look the same on others, with two maps in place of one.
 TEST_F(ConvertedModels, MapsFollowTheirTangents) {
     write_model_of("m.glb", R"(,"scale":0.5)", 0.4f);
