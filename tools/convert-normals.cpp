@@ -10,11 +10,13 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
+#include "batch/model_plan.h"
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "options/conversion.h"
 #include "options/mips.h"
+#include "tasks/model_output.h"
 #include "tasks/written_levels.h"
 
 namespace {
@@ -48,6 +50,10 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules{{}, Container::dds, false, conversion_.spaces.files(), {}, usual_encoding()};
         rules.models = conversion_.spaces.material();
+        rules.writes_models = true;
+        rules.conversion = {conversion_.spaces.tangents().value_or(TangentSource::file),
+                            conversion_.spaces.changes_models()};
+        rules.not_for_models = {"--mesh", "--to-mesh", "--from", "--to"};
         rules.amend = [this](cli::Task& task) { extras.amend(task); };
         return rules;
     }
@@ -56,6 +62,16 @@ private:
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    // What a map is packed from, and how.
+    struct Made {
+        MipChain chain;
+        PackOptions pack_with;
+        Extent whole;
+    };
+    [[nodiscard]] Result<Made> make(cli::Job& job);
+    [[nodiscard]] Result<void> make_model(cli::Job& job);
+    [[nodiscard]] Result<void> make_picture(cli::Job& job, ModelPicture& picture);
+    [[nodiscard]] bool writes_models() const { return cli::writes_models(files); }
     [[nodiscard]] Result<void> apply_scale(cli::Job& job, Source& source) const;
     [[nodiscard]] PackOptions packing(const SourceInfo& input, const cli::Task& task) const;
 
@@ -67,6 +83,7 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
     command.usage("NORMALS... -o FILE --mesh MESH");
     command.usage("NORMALS... --out-dir DIR --mesh MESH");
     command.usage("MODEL... --out-dir DIR");
+    command.usage("MODEL -o MODEL");
     command.input("NORMALS...", "normal maps, or glTF models with their maps; - is standard input");
     files.add(command);
     conversion_.add(command);
@@ -83,6 +100,8 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
                     "The tangents changed: makes the map fit again.");
     command.example("convert-normals model.glb --out-dir out --decoder godot",
                     "Every normal map that the materials of a model use, each on its mesh.");
+    command.example("convert-normals model.glb -o fixed.glb --tangents mikktspace",
+                    "The model with the tangents of MikkTSpace; its maps stay.");
     command.example("convert-normals obj_n.exr -o rock_n.dds --mesh rock.glb --from object --decoder unreal --y down",
                     "A baked object-space map for Unreal.");
     command.example(
@@ -105,7 +124,14 @@ ConvertNormals::ConvertNormals(const cli::ProgramRow& row) : NormalsConverter(ro
 }
 
 Result<void> ConvertNormals::check(const std::vector<cli::Task>& tasks) {
-    conversion_.spaces.check_conversion(command, cli::MapInputs::of(tasks));
+    if (!writes_models()) {
+        conversion_.spaces.check_conversion(command, cli::MapInputs::of(tasks));
+    } else if (conversion_.spaces.tangents().value_or(TangentSource::file) == TangentSource::file &&
+               !conversion_.spaces.changes_models()) {
+        throw cli::UsageError("nothing changes: give --tangents mikktspace or meshopt, --tangents-in or --decoder");
+    }
+    if (writes_models() && mips_.levels.value_or(1) != 1)
+        throw cli::UsageError("--mips", "models hold no levels: engines build them");
     mips_.check(tasks);
     return {};
 }
@@ -129,12 +155,12 @@ Result<void> ConvertNormals::apply_scale(cli::Job& job, Source& source) const {
     auto scaled = scale(std::move(source.chain.levels.front()), static_cast<float>(by), mode, {job.threads(), {}});
     if (!scaled) return scaled.error().of(job.task.name());
     source.chain.levels.front() = std::move(*scaled);
-    if (!conversion_.makes_object())
+    if (!conversion_.makes_object() && !writes_models())
         job.warn(fmt::format("the scale {:.4g} of its material is in the output: set it to 1 there", by));
     return {};
 }
 
-Result<void> ConvertNormals::process(cli::Job& job) {
+Result<ConvertNormals::Made> ConvertNormals::make(cli::Job& job) {
     // In tangent space, a wrong y gives a wrong result, whichever way green points in the output.
     const bool doubt_y = conversion_.spaces.from == Space::tangent;
     const cli::ModelInput* const model = job.task.model.get();
@@ -152,7 +178,7 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     cli::report_input(job, source->info);
     if (is_object && !holds_z(source->info.swizzle))
         return Error{ErrorCode::bad_option, job.task.name(), "stores no z, which object space needs"};
-    if (auto scaled = apply_scale(job, *source); !scaled) return scaled;
+    if (auto scaled = apply_scale(job, *source); !scaled) return scaled.error();
     auto converted = conversion_.convert(job, source->chain.levels.front(), 0.8);
     if (!converted) return converted.error();
     source->chain.levels.clear();
@@ -163,9 +189,17 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     mip.any_z = conversion_.makes_object();
     extras.apply(mip);
     const Extent whole = converted->map.extent();
-    const auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
+    auto chain = build_mip_chain(std::move(converted->map), mip, job.until(0.85));
     if (!chain) return chain.error();
-    auto texture = pack(*chain, pack_with, job.until(0.95));
+    return Made{std::move(*chain), pack_with, whole};
+}
+
+Result<void> ConvertNormals::process(cli::Job& job) {
+    if (job.task.model_output) return make_model(job);
+    const auto made = make(job);
+    if (!made) return made.error();
+    const PackOptions& pack_with = made->pack_with;
+    auto texture = pack(made->chain, pack_with, job.until(0.95));
     if (!texture) return texture.error();
     std::optional<RdoReport> rdo;
     if (pack_with.rdo.mean > 0.0f) rdo = texture->rdo;
@@ -173,8 +207,38 @@ Result<void> ConvertNormals::process(cli::Job& job) {
     const auto written = cli::write_levels(job, std::move(*texture), output.of(job.task.engine).write_options(job));
     if (!written) return written.error();
     cli::report_texture(job, extent, written->levels, pack_with, written->bytes, rdo);
-    note_output(job, {extent, written->levels, extent != whole, pack_with.encoding});
+    note_output(job, {extent, written->levels, extent != made->whole, pack_with.encoding});
     return {};
+}
+
+// The map of one material, whose job this is.
+Result<void> ConvertNormals::make_picture(cli::Job& job, ModelPicture& picture) {
+    const auto made = make(job);
+    if (!made) return made.error();
+    const auto texture = pack(made->chain, made->pack_with, job.until(0.95));
+    if (!texture) return texture.error();
+    auto bytes =
+        encode_file(*texture, job.task.container, output.of(job.task.engine).write_options(job), {job.threads(), {}});
+    if (!bytes) return bytes.error().of(job.task.name());
+    picture.bytes = std::move(*bytes);
+    job.task.model->report(job.report);
+    cli::report_texture(job, texture->extent(), 1, made->pack_with, picture.bytes.size(), std::nullopt);
+    return {};
+}
+
+Result<void> ConvertNormals::make_model(cli::Job& job) {
+    ModelChanges changes = job.task.model_output->changes(job.task.container);
+    auto made = cli::make_pictures(job, changes, [this](cli::Job& one, ModelPicture& picture) -> Result<bool> {
+        if (auto converted = make_picture(one, picture); !converted) return converted.error();
+        return true;
+    });
+    if (!made) return made;
+    auto tangents = cli::tangents_for(job, changes, conversion_.spaces.tangents().value_or(TangentSource::file));
+    if (!tangents) return tangents.error();
+    changes.tangents = std::move(*tangents);
+    if (output.of(job.task.engine).y == YAxis::down)
+        repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
+    return cli::write_model_output(job, changes);
 }
 
 const cli::Registered<ConvertNormals> kRegistered(

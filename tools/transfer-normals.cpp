@@ -24,6 +24,7 @@
 #include "options/rays.h"
 #include "options/tangent_space.h"
 #include "reports/transfer_report.h"
+#include "tasks/model_occlusion.h"
 #include "tasks/model_output.h"
 #include "tasks/written_levels.h"
 
@@ -34,7 +35,7 @@ using namespace tex;
 // Whether several triangles share most texels, as where UVs tile a picture. Mirrored halves of a model do not: each
 // texel has two.
 bool repeats(const TransferredMaps& maps, int subsamples) {
-    return maps.overlaps > 2 * maps.covered * subsamples * subsamples;
+    return maps.overlaps + maps.moved > 2 * maps.covered * subsamples * subsamples;
 }
 
 class TransferNormals : public cli::Converter {
@@ -45,9 +46,7 @@ private:
     [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override;
     void set_material_rules(cli::OutputRules& rules) const;
-    // Adds the pictures that models name.
     void add_pictures(const std::vector<std::string>& models, std::vector<std::string>& files_of) const;
-    // Whether the output is the low model with maps for its materials, and whether each of them gets an output.
     [[nodiscard]] bool writes_models() const { return cli::writes_models(files); }
     [[nodiscard]] bool takes_all_materials() const { return low_.material() == "all"; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -59,7 +58,6 @@ private:
         return std::any_of(tasks.begin(), tasks.end(), shares) ? 1 : cli::kMostFilesAtOnce;
     }
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    // The meshes of a job.
     struct Meshes {
         cli::MeshSpace low;
         std::shared_ptr<const cli::HighParts> high;
@@ -67,15 +65,14 @@ private:
     [[nodiscard]] Result<std::shared_ptr<const cli::HighParts>> read_high(cli::Job& job) const;
     [[nodiscard]] Result<Meshes> read(cli::Job& job) const;
     [[nodiscard]] Result<TransferredMaps> cast(cli::Job& job, const Meshes& meshes, const cli::HighPictures& pictures,
-                                               Extent extent) const;
+                                               Extent extent, bool occlusion) const;
     [[nodiscard]] Result<void> make(cli::Job& job);
     [[nodiscard]] Result<PackedTexture> pack_maps(cli::Job& job, TransferredMaps& maps, PackOptions& with) const;
     [[nodiscard]] Result<void> write(cli::Job& job, const Meshes& meshes, TransferredMaps& maps);
-    // A model with maps for its materials.
     [[nodiscard]] Result<void> make_model(cli::Job& job);
-    // Whether one can be made for the material of the job.
     [[nodiscard]] Result<bool> make_picture(cli::Job& job, const cli::HighPictures& pictures,
-                                            std::shared_ptr<const cli::HighParts> high, ModelPicture& picture);
+                                            std::shared_ptr<const cli::HighParts> high, ModelPicture& picture,
+                                            ModelPicture* occlusion, const cli::ModelOcclusion& place);
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override { return report_.write(console); }
 
     cli::HighMeshes high_;
@@ -143,12 +140,12 @@ cli::OutputRules TransferNormals::rules() const {
     rules.batch = Container::dds;
     rules.joins = !high_.is_given();
     if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
-    if (rules.joins && pictures_.takes_own()) add_pictures(command.inputs(), rules.shared);
+    if (rules.joins) add_pictures(command.inputs(), rules.shared);
     rules.tiles = [this](const std::string& input) { return low_.tiles_of_low(input, running.read); };
     set_material_rules(rules);
     rules.amend = [this](cli::Task& task) {
         high_.amend(task);
-        if (high_.is_given() && pictures_.takes_own()) add_pictures(high_.names_of(task), task.own);
+        if (high_.is_given()) add_pictures(high_.names_of(task), task.own);
         guides_.amend(task);
         pictures_.amend(task);
         ids_.amend(task);
@@ -161,6 +158,7 @@ void TransferNormals::add_pictures(const std::vector<std::string>& models, std::
     MeshReadOptions how;
     how.reader = running.read;
     for (const std::string& model : models) {
+        if (!pictures_.takes_own() && !(pictures_.takes_alpha() && cli::has_cutouts(model, how))) continue;
         for (std::string& file : cli::files_beside_model(model, how))
             if (!file.empty()) files_of.push_back(std::move(file));
     }
@@ -174,7 +172,7 @@ void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
     if (writes_models()) {
         rules.models = takes_all_materials() ? "" : low_.material();
         rules.writes_models = true;
-        rules.lods = low_.tangents();
+        rules.lods = {low_.tangents(), maps_.puts_occlusion_into_model()};
         rules.not_for_models = idle;
         for (const char* const name :
              {"--skew", "--offset", "--object-out", "--height-out", "--position-out", "--occlusion-out", "--bent-out",
@@ -182,6 +180,8 @@ void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
             rules.not_for_models.emplace_back(name);
         return;
     }
+    if (maps_.puts_occlusion_into_model())
+        throw cli::UsageError("--occlusion-into", "a model is no output here: give -o x.glb");
     if (!takes_all_materials()) return;
     if (const auto given = command.given_of(idle); !given.empty())
         throw cli::UsageError("--material all and " + given.front() + " contradict each other");
@@ -210,7 +210,8 @@ Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
 }
 
 Result<std::shared_ptr<const cli::HighParts>> TransferNormals::read_high(cli::Job& job) const {
-    return high_.read(job, {pictures_.is_given(), maps_.wants_vertex_colors(), pictures_.takes_own()});
+    return high_.read(
+        job, {pictures_.is_given(), maps_.wants_vertex_colors(), pictures_.takes_own(), pictures_.takes_alpha()});
 }
 
 Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
@@ -228,7 +229,7 @@ Result<TransferNormals::Meshes> TransferNormals::read(cli::Job& job) const {
 }
 
 Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshes, const cli::HighPictures& pictures,
-                                              Extent extent) const {
+                                              Extent extent, bool occlusion) const {
     const cli::MeshSpace& low = meshes.low;
     const cli::HighParts& high = *meshes.high;
     high_.compare(job, low.selected().part, high);
@@ -250,6 +251,7 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshe
     TransferOptions with = rays_.transfer(writes_models() ? HitChoice::nearest : HitChoice::outermost);
     if (guides_.wants_straight()) with.rays = RayMode::straight;
     maps_.request(with);
+    with.occlusion = with.occlusion || occlusion;
     if (!job.reached(0.1)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     cli::RaySpeed speed;
     inputs.rays = &speed.rays();
@@ -296,7 +298,7 @@ Result<void> TransferNormals::make(cli::Job& job) {
     if (!meshes) return meshes.error();
     const auto pictures = pictures_.read(job, *meshes->high);
     if (!pictures) return pictures.error();
-    auto maps = cast(job, *meshes, *pictures, rays_.extent());
+    auto maps = cast(job, *meshes, *pictures, rays_.extent(), false);
     if (!maps) return maps.error();
     if (auto judged = rays_.judge(job, *maps, guides_.remedy()); !judged) return judged;
     if (auto written = write(job, *meshes, *maps); !written) return written;
@@ -309,7 +311,8 @@ Result<void> TransferNormals::make(cli::Job& job) {
 
 // The map of one material, whose job this is.
 Result<bool> TransferNormals::make_picture(cli::Job& job, const cli::HighPictures& pictures,
-                                           std::shared_ptr<const cli::HighParts> high, ModelPicture& picture) {
+                                           std::shared_ptr<const cli::HighParts> high, ModelPicture& picture,
+                                           ModelPicture* occlusion, const cli::ModelOcclusion& place) {
     const cli::ModelInput& material = *job.task.model;
     auto low = low_.of_low(job.task, job.read_options, {job.threads(), {}});
     if (!low) return low.error();
@@ -323,7 +326,10 @@ Result<bool> TransferNormals::make_picture(cli::Job& job, const cli::HighPicture
         extent = old->extent();
     }
     const Meshes meshes{std::move(*low), std::move(high)};
-    auto maps = cast(job, meshes, pictures, extent);
+    auto orm = cli::orm_of(material, place, job.read_options);
+    if (!orm) return orm.error();
+    const Extent of_orm = orm->planes.empty() ? extent : orm->planes.front().extent();
+    auto maps = cast(job, meshes, pictures, extent, occlusion != nullptr && of_orm == extent);
     if (!maps) return maps.error();
     if (repeats(*maps, rays_.transfer().subsamples)) {
         job.warn("its UVs repeat the picture, so that no map can be made for it; it stays as it is");
@@ -338,6 +344,18 @@ Result<bool> TransferNormals::make_picture(cli::Job& job, const cli::HighPicture
         encode_file(*texture, job.task.container, output.of(job.task.engine).write_options(job), {job.threads(), {}});
     if (!bytes) return bytes.error().of(job.task.name());
     picture.bytes = std::move(*bytes);
+    if (occlusion != nullptr && maps->occlusion.empty()) {
+        cli::Job again(job.task, job.console, job.read_options, job.write_options, job.threads(),
+                       [&](double, const std::string&) { return job.reached(0.95); });
+        auto other = cast(again, meshes, pictures, of_orm, true);
+        if (!other) return other.error();
+        maps->occlusion = std::move(other->occlusion);
+    }
+    if (occlusion != nullptr) {
+        auto made = cli::occlusion_picture(job, std::move(maps->occlusion), std::move(*orm), occlusion->container);
+        if (!made) return made.error().of(job.task.name());
+        occlusion->bytes = std::move(*made);
+    }
     material.report(job.report);
     cli::report_texture(job, texture->extent(), 1, with, picture.bytes.size(), std::nullopt);
     return true;
@@ -350,28 +368,20 @@ Result<void> TransferNormals::make_model(cli::Job& job) {
     if (!high) return high.error();
     const auto pictures = pictures_.read(job, **high);
     if (!pictures) return pictures.error();
-    for (std::size_t k = 0; k < changes.pictures.size(); ++k) {
-        cli::Task task = job.task;
-        task.model_output = nullptr;
-        task.model = model.images[k].front();
-        const auto count = static_cast<double>(changes.pictures.size());
-        const auto advance = [&](double done, const std::string&) {
-            return job.reached(0.95 * (static_cast<double>(k) + done) / count);
-        };
-        cli::Job one(task, job.console, job.read_options, job.write_options, job.threads(), advance);
-        const auto made = make_picture(one, *pictures, *high, changes.pictures[k]);
-        if (!made) return made.error();
-        job.take(one);
-        if (*made) job.report["maps"].push_back(std::move(one.report));
-    }
-    std::erase_if(changes.pictures, [](const ModelPicture& picture) { return picture.bytes.empty(); });
+    const std::size_t count = model.images.size();
+    const auto make = [&](cli::Job& one, ModelPicture& picture) {
+        const auto k = static_cast<std::size_t>(&picture - changes.pictures.data());
+        const bool has_occlusion = !model.occlusion.empty();
+        return make_picture(one, *pictures, *high, picture, has_occlusion ? &changes.pictures[count + k] : nullptr,
+                            has_occlusion ? model.occlusion[k] : cli::ModelOcclusion{});
+    };
+    if (auto made = cli::make_pictures(job, changes, make); !made) return made;
     if (changes.pictures.empty()) return Error{ErrorCode::bad_option, job.task.input, "no map can be made for it"};
     auto tangents = cli::tangents_for(job, changes, low_.tangents());
     if (!tangents) return tangents.error();
     changes.tangents = std::move(*tangents);
     if (output.of(job.task.engine).y == YAxis::down)
         repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
-    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     return cli::write_model_output(job, changes);
 }
 

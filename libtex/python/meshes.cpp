@@ -191,6 +191,9 @@ py::list materials_of(const Mesh& mesh) {
         facts["has_normal_map"] = material.has_normal_map;
         facts["uv_transform"] = transform_of(material.uv_transform);
         facts["mixed_transforms"] = material.mixed_transforms;
+        facts["alpha_mode"] = str_of(std::string(name_of(kAlphaModeNames, material.alpha_mode)));
+        facts["alpha_cutoff"] = material.alpha_cutoff;
+        facts["alpha"] = material.alpha;
         materials.append(facts);
     }
     return materials;

@@ -240,6 +240,9 @@ void each_part(MeshMaterial& o, F& f) {
     f(o.has_normal_map);
     f(o.uv_transform);
     f(o.mixed_transforms);
+    f(o.alpha_mode);
+    f(o.alpha_cutoff);
+    f(o.alpha);
 }
 
 template <class F>

@@ -20,6 +20,7 @@ void each_field(MeshReadOptions& o, F& f) {
     f("reader", o.reader);
     f("max_bytes", o.max_bytes);
     f("colors", o.colors);
+    f("images", o.images);
 }
 
 template <class F>
@@ -198,6 +199,7 @@ py::dict dict_of(ConvertedMap converted) {
     result["coverage"] = coverage;
     result["covered"] = converted.covered;
     result["overlaps"] = converted.overlaps;
+    result["moved"] = converted.moved;
     result["backward"] = converted.backward;
     result["singular"] = converted.singular;
     result["unmatched"] = converted.unmatched;

@@ -129,6 +129,7 @@ PartPlace place_from(const py::object& item) {
 struct OwnInputs {
     TransferInputs inputs;
     Plane<float> skew, offset;
+    std::list<Plane<float>> alphas;
     std::list<NormalMap> maps;
     std::list<std::vector<Float4>> tangents;
     std::list<Picture> pictures;
@@ -169,9 +170,16 @@ private:
                 detail.color = &*pictures.emplace_back(value, name);
             } else if (name == "uv_set") {
                 detail.uv_set = Convert<int>::from(value, name);
+            } else if (name == "alpha") {
+                detail.alpha = &alphas.emplace_back(plane_from(value, name));
+            } else if (name == "alpha_cutoff") {
+                detail.alpha_cutoff = Convert<float>::from(value, name);
+            } else if (name == "alpha_uv_set") {
+                detail.alpha_uv_set = Convert<int>::from(value, name);
             } else {
                 raise_value("high_details",
-                            shown_text(name) + " must be one of 'normals', 'tangents', 'decoder', 'color', 'uv_set'");
+                            shown_text(name) + " must be one of 'normals', 'tangents', 'decoder', 'color', 'uv_set', "
+                                               "'alpha', 'alpha_cutoff', 'alpha_uv_set'");
             }
         }
     }
@@ -229,6 +237,7 @@ py::dict dict_of(TransferredMaps maps) {
     result["covered"] = maps.covered;
     result["missed"] = maps.missed;
     result["overlaps"] = maps.overlaps;
+    result["moved"] = maps.moved;
     result["backward"] = maps.backward;
     result["singular"] = maps.singular;
     result["behind"] = maps.behind;

@@ -60,7 +60,9 @@ public:
     // Threads may convert different strips at the same time.
     void run(int strip) {
         std::vector<Covered> covered;
-        overlaps_ += coverage_.cover(strip, covered);
+        const Overlaps overlaps = coverage_.cover(strip, covered);
+        overlaps_ += overlaps.same;
+        moved_ += overlaps.moved;
         const Extent extent = map_.extent();
         const int first = strip * coverage_.strip_rows() / subsamples_;
         const int last = std::min(extent.height, first + coverage_.strip_rows() / subsamples_);
@@ -75,6 +77,7 @@ public:
     void finish() {
         result_.covered = covered_;
         result_.overlaps = overlaps_;
+        result_.moved = moved_;
         result_.backward = backward_;
         result_.singular = singular_;
     }
@@ -145,7 +148,7 @@ private:
     const Direction direction_;
     const int subsamples_;
     ConvertedMap& result_;
-    std::atomic<std::int64_t> covered_{0}, overlaps_{0}, backward_{0}, singular_{0};
+    std::atomic<std::int64_t> covered_{0}, overlaps_{0}, moved_{0}, backward_{0}, singular_{0};
 };
 
 // Fills the texels up to `width` texels from those that have a normal. The others become background.

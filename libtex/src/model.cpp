@@ -52,7 +52,8 @@ Result<Model> parse_model(const std::string& path, std::span<const std::byte> by
     }
     auto maps = gltf_maps(root);
     if (!maps) return maps.error();
-    model.images = gltf_images(root, buffers, *maps);
+    model.images = gltf_images(root, buffers, *maps, options.images);
+    model.textures = gltf_textures(root);
     model.maps = std::move(*maps);
     for (ModelImage& image : model.images) {
         if (image.file.empty()) continue;

@@ -202,11 +202,12 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     if (options.vertex_colors) result.vertex_color = colors_of(extent);
     std::vector<RayCaster> casters;
     for (const RayGroup& group : groups->all())
-        casters.emplace_back(group.triangles, group.tree, options.hit, options.backfaces, result.back);
+        casters.emplace_back(group.triangles, group.tree, surface, options.hit, options.backfaces, result.back);
     std::optional<SecondRays> second;
     if (options.has_second_rays()) {
         constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-        second.emplace(groups->whole(), options, length_of(options.occlusion_distance, result.diagonal, kNoLimit));
+        second.emplace(groups->whole(), surface, options,
+                       length_of(options.occlusion_distance, result.diagonal, kNoLimit));
     }
     const TransferScene scene{
         low, *groups,           casters,    surface, starts, *coverage, second ? &*second : nullptr,

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The step transfer of build-normals: a low mesh by the rule, its high one by a pattern.
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "cli/meshes.h"
 #include "cli/texture_tree.h"
+#include "unit/gltf_files.h"
 
 namespace tex::cli {
 namespace {
@@ -92,6 +95,50 @@ TEST_F(BuildTransfer, RefusesWhatCannotBe) {
         "version = 1\n[[rule]]\nmatch = \"meshes/crate_low.glb\"\nname = \"out/n.png\"\nsteps = [ { transfer "
         "= { high = \"meshes/crate_high.glb\" } }, { mip = {} } ]\n");
     fails(2, "transfer must be the only step");
+}
+
+// The name says that the output is the model.
+TEST_F(BuildTransfer, MakesModels) {
+    GltfMaker maker;
+    maker.add(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, "VEC3", 5126);
+    maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0.6f, 0.8f, 0, 0, 1}, "VEC3", 5126);
+    maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
+    maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+    for (const char* const name : {"meshes/card_low.glb", "meshes/card_high.glb"}) {
+        scratch_.write(name, maker.glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,)"
+                                       R"("material":0})",
+                                       R"(,"materials":[{"name":"card"}])"));
+    }
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"meshes/card_low.glb\"\nname = \"out/{stem:-_low}_lod.glb\"\n"
+                   "steps = [ { transfer = { extent = \"16\", high = \"{dir}/{stem:-_low}_high.glb\" } } ]\n");
+    const Ran made = build();
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(done_.at("meshes/card_low.glb"), "made");
+    const Ran hand =
+        run(scratch_, "transfer-normals",
+            {"meshes/card_low.glb", "meshes/card_high.glb", "-o", "hand.glb", "--extent", "16", "--no-sync"});
+    ASSERT_EQ(hand.code, 0) << hand.err;
+    EXPECT_EQ(scratch_.read("out/card_lod.glb"), scratch_.read("hand.glb"));
+    ASSERT_EQ(build().code, 0);
+    EXPECT_EQ(done_.at("meshes/card_low.glb"), "current");
+    // Other commands that write models do the same.
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"out/*_lod.glb\"\nname = \"packed/{stem}.glb\"\n"
+                   "steps = [ { pack = { y = \"down\" } } ]\n");
+    const Ran packed = build();
+    ASSERT_EQ(packed.code, 0) << packed.err;
+    ASSERT_EQ(
+        run(scratch_, "pack-normals", {"hand.glb", "-o", "hand2.glb", "--y", "down", "--no-sync", "--quiet"}).code, 0);
+    EXPECT_EQ(scratch_.read("packed/card_lod.glb"), scratch_.read("hand2.glb"));
+    // A model with files beside it would have outputs that the manifest does not know.
+    fs::create_directories(scratch_.path("beside"));
+    scratch_.write("beside/n.png", "a picture");
+    scratch_.write("beside/a.gltf", R"({"asset":{"version":"2.0"},"images":[{"uri":"n.png"}]})");
+    scratch_.write("normals.toml",
+                   "version = 1\n[[rule]]\nmatch = \"beside/a.gltf\"\nname = \"packed/{stem}.gltf\"\n"
+                   "steps = [ { pack = { y = \"down\" } } ]\n");
+    fails(2, "a rule writes models as .glb");
 }
 
 TEST_F(BuildTransfer, FailsIfMoreIsMissedThanTheLimit) {

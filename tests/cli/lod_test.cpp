@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -227,6 +228,117 @@ TEST_F(Lods, TransformsStayWhereUvsNeedThem) {
     does("for f in tiled half; do transfer-normals $f.glb high.glb -o out_$f.glb --quiet; done");
     EXPECT_EQ(model("out_tiled.glb").maps.at(0).uv_transform, UvTransform{});
     EXPECT_EQ(model("out_half.glb").maps.at(0).uv_transform.scale_x, 0.5);
+}
+
+// A leaf over a floor: both lean to other sides. What the leaf's picture leaves out shows the floor.
+TEST_F(Lods, RaysPassWhereAMaskHasHoles) {
+    write_flat("left.png", "52,128,230");
+    write_flat("right.png", "204,128,230");
+    does(
+        "convert -size 16x16 xc:white \\( -size 8x16 xc:black -size 8x16 xc:white +append \\) -alpha off "
+        "-compose CopyOpacity -composite -define png:color-type=6 leaf.png");
+    const auto write_high = [&](const std::string& alpha) {
+        GltfMaker maker;
+        for (const float z : {0.0f, 0.1f}) {
+            maker.add(std::vector<float>{0, 0, z, 1, 0, z, 1, 1, z, 0, 1, z}, "VEC3", 5126);
+            maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
+            maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
+            maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
+        }
+        scratch_.write(
+            "high.glb",
+            maker.glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":0},)"
+                      R"({"attributes":{"POSITION":4,"NORMAL":5,"TEXCOORD_0":6},"indices":7,"material":1})",
+                      R"(,"materials":[{"name":"floor","normalTexture":{"index":0}},{"name":"leaf","normalTexture":)"
+                      R"({"index":1},"pbrMetallicRoughness":{"baseColorTexture":{"index":2}})" +
+                          alpha +
+                          R"(}],"textures":[{"source":0},{"source":1},{"source":2}],"images":[{"uri":"left.png"},)"
+                          R"({"uri":"right.png"},{"uri":"leaf.png"}])"));
+    };
+    write_squares("low.glb", {R"({"name":"ground"})"}, "");
+    const auto x_at = [&](const std::string& more, int i) {
+        const Ran ran = does(
+            "transfer-normals low.glb high.glb -o n.png --extent 16 --high-normals own --front 1 --back 1 " + more);
+        EXPECT_EQ(ran.err, "") << more;
+        const auto read = read_texture(scratch_.path("n.png"));
+        return read ? unpack(*read)->levels.front().x.at(i, 8) : 0.0f;
+    };
+    write_high(R"(,"alphaMode":"MASK")");
+    EXPECT_LT(x_at("", 4), -0.5f);
+    EXPECT_GT(x_at("", 12), 0.5f);
+    EXPECT_GT(x_at("--high-alpha off", 4), 0.5f);
+    write_high(R"(,"alphaMode":"MASK","alphaCutoff":0)");
+    EXPECT_GT(x_at("", 4), 0.5f) << "nothing is below 0";
+    write_high(R"(,"alphaMode":"OPAQUE")");
+    EXPECT_GT(x_at("", 4), 0.5f);
+    EXPECT_LT(x_at("--high-alpha leaf=leaf.png", 4), -0.5f);
+    write_high(R"(,"alphaMode":"BLEND")");
+    const Ran noted = does("transfer-normals low.glb high.glb -o n.png --extent 16 --high-normals own --json");
+    const auto line = JsonValue::parse(noted.out);
+    ASSERT_FALSE(line["warnings"].empty());
+    EXPECT_NE(line["warnings"][0]["message"].get<std::string>().find("as if it were solid (material \"leaf\")"),
+              std::string::npos);
+    // A depfile knows the picture, and a model as the output reads the same.
+    write_high(R"(,"alphaMode":"MASK")");
+    does(
+        "transfer-normals low.glb high.glb -o lod.glb --extent 16 --front 1 --back 1 --hit outermost --depfile d "
+        "--quiet");
+    EXPECT_NE(scratch_.read("d").find("leaf.png"), std::string::npos);
+    EXPECT_LT(map_of(model("lod.glb")).x.at(4, 8), -0.5f);
+    refuses("transfer-normals low.glb high.glb -o x.png --high-alpha stem=leaf.png", 4, "has no material \"stem\"");
+    refuses("transfer-normals low.glb high.glb -o x.png --high-alpha off --high-alpha leaf.png", 2,
+            "contradict each other");
+}
+
+// Red is what transfer-normals writes beside a picture; green and blue stay.
+TEST_F(Lods, OcclusionGoesIntoTheModel) {
+    does(
+        "convert -size 16x16 gradient:'rgb(9,20,30)-rgb(7,200,31)' -depth 8 -define png:color-type=2 orm.png; "
+        "convert -size 8x8 'xc:rgb(1,2,3)' n.png");
+    const std::string more = R"(,"textures":[{"source":0},{"source":1}],"images":[{"uri":"orm.png"},{"uri":"n.png"}])";
+    write_squares("high.glb", {R"({"name":"A"})", R"({"name":"B"})"}, "");
+    write_squares("low.glb",
+                  {R"({"name":"A","pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0}}})",
+                   R"({"name":"B","normalTexture":{"index":1}})"},
+                  more);
+    const std::string pair = "transfer-normals low.glb high.glb --extent 16 --rays-per-hit 16 --quiet ";
+    does("mkdir out; " + pair + "-o out/lod.glb --occlusion-into model");
+    const std::string file = scratch_.read("out/lod.glb");
+    std::uint32_t size = 0;
+    std::memcpy(&size, file.data() + 12, 4);
+    const JsonValue document = JsonValue::parse(file.substr(20, size));
+    const JsonValue materials = document["materials"], images = document["images"], textures = document["textures"];
+    EXPECT_EQ(materials[0]["occlusionTexture"]["index"],
+              materials[0]["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"]);
+    ASSERT_TRUE(materials[1].contains("occlusionTexture"));
+    const auto picture_at = [&](const JsonValue& slot) {
+        const JsonValue image = images[textures[slot["index"].get<std::size_t>()]["source"].get<std::size_t>()];
+        if (image.contains("uri")) return read_image(scratch_.path("out/" + image["uri"].get<std::string>()));
+        MeshReadOptions all;
+        all.images = true;
+        const auto read = read_model_maps(scratch_.path("out/lod.glb"), all);
+        const auto number = textures[slot["index"].get<std::size_t>()]["source"].get<std::size_t>();
+        return read_image(read->images.at(number).bytes, "picture");
+    };
+    const auto orm = picture_at(materials[0]["occlusionTexture"]), before = read_image(scratch_.path("orm.png"));
+    ASSERT_TRUE(orm && before);
+    ASSERT_EQ(orm->planes.size(), 3u);
+    does(pair + "-o n2.png --material A --occlusion-out ao.png");
+    const auto wanted = read_image(scratch_.path("ao.png"));
+    ASSERT_TRUE(wanted);
+    for (int j = 0; j < 16; ++j) {
+        for (int i = 0; i < 16; ++i) {
+            ASSERT_NEAR(orm->planes[0].at(i, j), wanted->planes[0].at(i, j), 1.0 / 255.0);
+            ASSERT_EQ(orm->planes[1].at(i, j), before->planes[1].at(i, j)) << "to the code";
+            ASSERT_EQ(orm->planes[2].at(i, j), before->planes[2].at(i, j));
+        }
+    }
+    const auto own = picture_at(materials[1]["occlusionTexture"]);
+    ASSERT_TRUE(own);
+    EXPECT_EQ(own->planes.size(), 1u);
+    EXPECT_EQ(own->planes[0].at(3, 3), 1.0f) << "nothing stands above a square";
+    refuses(pair + "-o x.png --material A --occlusion-into model", 2, "a model is no output here");
+    refuses(pair + "-o x.glb --occlusion-into red", 2, "must be model");
 }
 
 TEST_F(Lods, WhatCannotBeIsRefused) {

@@ -105,6 +105,11 @@ TEST_F(ModelOutputs, PicturesAreWhatTheCommandMakesOfTheirFiles) {
     does("pack-normals inside.png -o file.jpg --quality 80");
     extract("model.glb", "model.jpg");
     same("model.jpg", "file.jpg");
+    EXPECT_EQ(does("pack-normals N804*.glb -o model.glb --container webp").err, "");
+    does("pack-normals inside.png -o file.webp");
+    extract("model.glb", "model.webp");
+    same("model.webp", "file.webp");
+    EXPECT_NE(scratch_.read("model.glb").find(R"("extensionsRequired":["EXT_texture_webp"])"), std::string::npos);
 }
 
 TEST_F(ModelOutputs, DirectionsThatAreMeasuredAreThoseOfEachMap) {

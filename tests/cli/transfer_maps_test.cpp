@@ -85,7 +85,7 @@ TEST_F(TransferMaps, WritesOcclusionBentNormalsAndThickness) {
     const auto stored = reports({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--thickness-out", "t.png"});
     EXPECT_EQ(stored["thickness"]["stored"][1], stored["thickness"]["highest"]);
     refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--rays-per-hit", "8"}, 2,
-            "--rays-per-hit needs --occlusion-out, --bent-out or --thickness-out");
+            "--rays-per-hit needs --occlusion-out, --occlusion-into, --bent-out or --thickness-out");
     refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--bent-out", "n2.png"}, 2, "n2.png");
     refuses({"crate_low.glb", "crate_high.glb", "-o", "n2.png", "--bent-out", "b2.png", "--rays-per-hit", "0"}, 2,
             "--rays-per-hit");

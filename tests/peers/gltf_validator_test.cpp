@@ -247,9 +247,33 @@ protected:
         return all;
     }
 
+    // Compares what it says about models that were written with what it says about those that they were made of.
+    void says_nothing_more(const std::vector<std::string>& before, const std::vector<std::string>& after) {
+        const auto was = messages(before), is = messages(after);
+        ASSERT_EQ(was.size(), before.size());
+        ASSERT_EQ(is.size(), after.size());
+        for (std::size_t k = 0; k < after.size(); ++k) {
+            std::vector<std::string> more;
+            std::set_difference(is[k].begin(), is[k].end(), was[k].begin(), was[k].end(), std::back_inserter(more));
+            EXPECT_TRUE(more.empty()) << more.front() << " in " << after[k] << ", made of " << before[k];
+        }
+        std::printf("%zu models were written\n", after.size());
+    }
+
     const tex::Scratch scratch_;
     int valid_ = 0, refused_ = 0;
 };
+
+// A white texel.
+std::vector<std::byte> png_of_one_texel() {
+    tex::Image white;
+    for (const char* const name : {"R", "G", "B"}) {
+        white.planes.emplace_back(tex::Extent{1, 1});
+        white.planes.back().at(0, 0) = 1.0f;
+        white.names.emplace_back(name);
+    }
+    return *tex::encode_file(*tex::picture_of(white), tex::Container::png);
+}
 
 TEST_F(GltfValidator, AgreesOnModelsOfOthers) {
     if (!fs::exists(kData)) GTEST_SKIP() << "no ../shared/data";
@@ -340,15 +364,43 @@ TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithOtherPictures) {
         }
     }
     EXPECT_GT(after.size(), 80u);
-    const auto was = messages(before), is = messages(after);
-    ASSERT_EQ(was.size(), before.size());
-    ASSERT_EQ(is.size(), after.size());
-    for (std::size_t k = 0; k < after.size(); ++k) {
-        std::vector<std::string> more;
-        std::set_difference(is[k].begin(), is[k].end(), was[k].begin(), was[k].end(), std::back_inserter(more));
-        EXPECT_TRUE(more.empty()) << more.front() << " in " << after[k] << ", made of " << before[k];
+    says_nothing_more(before, after);
+}
+
+// All materials with a normal map get tangents for it, and occlusion in a picture of their own.
+TEST_F(GltfValidator, HasNothingMoreToSayAboutModelsWithTangentsAndOcclusion) {
+    std::vector<std::string> before, after;
+    tex::WriteOptions writing;
+    writing.sync = false;
+    for (const fs::path& root : {kData, kSource / "samples"}) {
+        if (!fs::exists(root)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root)) {
+            const auto extension = entry.path().extension();
+            if ((extension != ".gltf" && extension != ".glb") || entry.file_size() > (1u << 21)) continue;
+            const auto model = tex::read_model(entry.path().string());
+            if (!model || model->maps.empty()) continue;
+            tex::ModelChanges changes;
+            for (const tex::ModelMap& map : model->maps) {
+                if (map.slot != tex::NormalSlot::normal) continue;
+                changes.pictures.push_back({{map}, tex::Container::png, png_of_one_texel()});
+                changes.pictures.back().use = tex::PictureUse::occlusion;
+                for (const tex::MeshPart& part : model->mesh.parts) {
+                    const auto moved = tex::with_moved_uvs(part, map.uv_set, map.uv_transform);
+                    if (part.material != map.material || !moved || part.normals.empty()) continue;
+                    auto made = tex::make_tangents(*moved, tex::TangentMethod::mikktspace, map.uv_set);
+                    if (made) changes.tangents.push_back({part.mesh, part.primitive, std::move(*made)});
+                }
+            }
+            const fs::path output = scratch_.path("out/" + std::to_string(after.size())) / entry.path().filename();
+            fs::create_directories(output.parent_path());
+            const auto written = tex::write_model(entry.path().string(), output.string(), changes, {}, writing);
+            ASSERT_TRUE(written) << entry.path() << ": " << written.error().message();
+            before.push_back(entry.path().string());
+            after.push_back(output.string());
+        }
     }
-    std::printf("%zu models were written\n", after.size());
+    EXPECT_GT(after.size(), 5u);
+    says_nothing_more(before, after);
 }
 
 TEST_F(GltfValidator, AgreesOnModelsWithOneChange) {

@@ -67,6 +67,35 @@ TEST(ConvertCoverage, CentresOnABorderBelongToTheTopAndTheLeft) {
     }
 }
 
+// The first square lies one unit beside the map, as bakers move mirrored halves out of the way, and the second in it.
+TEST(ConvertCoverage, ShellsMovedByWholeUnitsDecideNothing) {
+    MeshPart part = square(0.25f, 0.75f);
+    const std::size_t vertices = part.positions.size();
+    for (std::size_t v = 0; v < vertices; ++v) {
+        part.positions.push_back(part.positions[v]);
+        part.normals.push_back(part.normals[v]);
+        part.uvs[0].push_back(part.uvs[0][v]);
+        part.uvs[0][v].x += 1.0f;
+    }
+    for (std::size_t c = 0; c < 6; ++c) part.indices.push_back(part.indices[c] + static_cast<std::uint32_t>(vertices));
+    std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});
+    tangents.resize(12, {0.0f, 1.0f, 0.0f, 1.0f});
+    const auto converted = to_object_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), {part, tangents});
+    ASSERT_TRUE(converted);
+    EXPECT_EQ(converted->covered, 64);
+    EXPECT_EQ(converted->overlaps, 0);
+    EXPECT_EQ(converted->moved, 64);
+    EXPECT_FLOAT_EQ(converted->map.y.at(8, 8), 0.6f);
+    EXPECT_FLOAT_EQ(converted->map.y.at(1, 8), 0.6f) << "nor about the padding";
+    // Where nothing lies inside, the first one decides, and the others are counted.
+    for (Float2& uv : part.uvs[0]) uv.y += 2.0f;
+    const auto outside = to_object_space(constant_map({16, 16}, {0.6f, 0.0f, 0.8f}), {part, tangents});
+    ASSERT_TRUE(outside);
+    EXPECT_EQ(outside->overlaps, 64);
+    EXPECT_EQ(outside->moved, 0);
+    EXPECT_FLOAT_EQ(outside->map.x.at(8, 8), 0.6f);
+}
+
 TEST(ConvertCoverage, LetsTheFirstOfSeveralTrianglesDecide) {
     MeshPart part = square(0.25f, 0.75f, 3);
     std::vector<Float4> tangents(6, {1.0f, 0.0f, 0.0f, 1.0f});

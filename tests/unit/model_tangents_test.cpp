@@ -192,6 +192,60 @@ TEST_F(ModelSlots, TwoMapsOfOneImageLeaveNoImageWithoutUse) {
     EXPECT_EQ(now["textures"][1]["sampler"], 0);
 }
 
+// A texture of roughness that something else uses, too, is split; other slots keep theirs.
+TEST_F(ModelSlots, OcclusionGoesIntoTheTextureOfRoughness) {
+    json model = document("m.glb");
+    model["materials"][0]["pbrMetallicRoughness"] =
+        json::parse(R"({"metallicRoughnessTexture":{"index":1},"baseColorTexture":{"index":1},"roughnessFactor":0.5})");
+    model["textures"].push_back({{"source", 1}});
+    model["images"].push_back({{"bufferView", 0}, {"mimeType", "image/jpeg"}, {"name", "orm"}});
+    const std::string file = read("m.glb");
+    write("m.glb", GltfMaker::glb_of(model.dump(), file.substr(file.find("BIN") + 4)));
+    ModelPicture orm = picture(ModelMap{});
+    orm.use = PictureUse::orm;
+    const json now = written({{orm}});
+    const json roughness = now["materials"][0]["pbrMetallicRoughness"];
+    EXPECT_EQ(roughness, json::parse(R"({"metallicRoughnessTexture":{"index":2},"baseColorTexture":{"index":1},)"
+                                     R"("roughnessFactor":0.5})"));
+    EXPECT_EQ(now["materials"][0]["occlusionTexture"], json::parse(R"({"index":2})"));
+    EXPECT_EQ(now["textures"][2], json::parse(R"({"source":2})"));
+    EXPECT_EQ(now["images"][2]["mimeType"], "image/png");
+    EXPECT_EQ(now["materials"][0]["normalTexture"], model["materials"][0]["normalTexture"]);
+    // Nobody else: the picture takes the place of the old one.
+    model["materials"][0]["pbrMetallicRoughness"].erase("baseColorTexture");
+    write("m.glb", GltfMaker::glb_of(model.dump(), file.substr(file.find("BIN") + 4)));
+    const json own = written({{orm}});
+    EXPECT_EQ(own["textures"].size(), 2u);
+    EXPECT_EQ(own["images"].size(), 2u);
+    EXPECT_EQ(own["materials"][0]["occlusionTexture"], json::parse(R"({"index":1})"));
+}
+
+TEST_F(ModelSlots, OcclusionGetsAPictureOfItsOwn) {
+    ModelMap map;
+    map.material = 1;
+    map.uv_transform.scale_x = 0.5;
+    ModelPicture occlusion = picture(map);
+    occlusion.use = PictureUse::occlusion;
+    json now = written({{occlusion}});
+    EXPECT_EQ(now["materials"][1]["occlusionTexture"],
+              json::parse(R"({"index":1,"extensions":{"KHR_texture_transform":{"offset":[0,0],"scale":[0.5,1]}}})"));
+    EXPECT_EQ(now["materials"][0], document("m.glb")["materials"][0]);
+    // In place of another one, whose strength was for that.
+    json model = document("m.glb");
+    model["materials"][1]["occlusionTexture"] = json::parse(R"({"index":0,"strength":0.25})");
+    const std::string file = read("m.glb");
+    write("m.glb", GltfMaker::glb_of(model.dump(), file.substr(file.find("BIN") + 4)));
+    now = written({{occlusion}});
+    EXPECT_EQ(now["materials"][1]["occlusionTexture"]["index"], 1);
+    EXPECT_FALSE(now["materials"][1]["occlusionTexture"].contains("strength"));
+    // A material has no texture of roughness, no image of the map is asked for, and there are two materials.
+    occlusion.use = PictureUse::orm;
+    EXPECT_EQ(write_model(path("m.glb"), path("no.glb"), {{occlusion}}).error().reason, "material 1 has no such map");
+    occlusion.use = PictureUse::occlusion;
+    occlusion.maps[0].material = 2;
+    EXPECT_EQ(write_model(path("m.glb"), path("no.glb"), {{occlusion}}).error().code, ErrorCode::bad_option);
+}
+
 TEST_F(ModelSlots, WebpIsNamedByItsExtension) {
     const ModelMap map = read_model_maps(path("m.glb"))->maps.at(0);
     const json now = written({{picture(map, Container::webp)}});

@@ -293,7 +293,18 @@ const OutputRules& Converter::known_rules() const {
     return known_rules_;
 }
 
-Task Converter::task_for(Task task) const { return complete(std::move(task), output_for_task(), known_rules()); }
+Task Converter::task_for(Task task) const {
+    const OutputRules& known = known_rules();
+    if (!known.writes_models || !writes_models(files)) return complete(std::move(task), output_for_task(), known);
+    MeshReadOptions how;
+    how.reader = running.read;
+    return complete_model(std::move(task), files, output, known, command, how);
+}
+
+Result<void> Converter::process_task(Job& job) {
+    if (job.task.model_output && job.task.model_output->error) return *job.task.model_output->error;
+    return process(job);
+}
 
 bool Converter::makes_tiles() const { return static_cast<bool>(known_rules().tiles); }
 

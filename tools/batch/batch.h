@@ -103,7 +103,7 @@ public:
     // Does what check() does, for such a task.
     [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
     // Does what process() does, for a job of such a task.
-    [[nodiscard]] Result<void> process_task(Job& job) { return process(job); }
+    [[nodiscard]] Result<void> process_task(Job& job);
     // Whether a manifest can name it. The files of a step are the same for all of its inputs.
     [[nodiscard]] virtual bool can_be_step() const { return true; }
     // What process() does, as a step of apply_steps(). Nothing if the command does something else.

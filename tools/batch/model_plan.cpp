@@ -2,7 +2,9 @@
 
 #include "batch/model_plan.h"
 
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "files/path_names.h"
 #include "tasks/collisions.h"
 #include "tasks/depfile.h"
 #include "tasks/model_output.h"
@@ -53,6 +56,19 @@ std::string output_for(const Input& input, const FileOptions& files) {
     return files.output.empty() ? files.place(files.name, files.fields_of(input.name)) : files.output;
 }
 
+// Completes a task, and returns the files beside its model.
+std::vector<ModelFile> fill(Task& task, const OutputOptions& own, const OutputRules& rules,
+                            const MeshReadOptions& options) {
+    task.container = *own.container;
+    task.engine = own.engine;
+    task.shared = rules.shared;
+    if (rules.amend) rules.amend(task);
+    if (rules.lods) return set_lod_output(task, *rules.models, rules.lods->tangents, rules.lods->occlusion, options);
+    if (const auto& with = rules.conversion)
+        return set_converted_output(task, *rules.models, with->tangents, with->changes_maps, options);
+    return set_model_output(task, *rules.models, rules.keeps_maps, options);
+}
+
 // Files beside models that several of them have: the first task states them.
 void leave_out_shared(std::vector<Task>& tasks, const std::vector<std::vector<ModelFile>>& files) {
     std::map<std::string, std::pair<std::string, bool>> known;
@@ -66,6 +82,22 @@ void leave_out_shared(std::vector<Task>& tasks, const std::vector<std::vector<Mo
 }
 
 }  // namespace
+
+Task complete_model(Task task, const FileOptions& files, const OutputOptions& output, const OutputRules& rules,
+                    const Command& command, const MeshReadOptions& options) {
+    const OutputOptions own = picture_options(files, output, rules, command);
+    if (lower_case(slashed(std::filesystem::path(task.output).extension())) != ".glb")
+        throw UsageError(fmt::format("{}: a rule writes models as .glb", printable(task.output)));
+    fill(task, own, rules, options);
+    if (task.more_outputs.empty()) return task;
+    auto refused = std::make_shared<ModelOutput>();
+    refused->error = Error{ErrorCode::unsupported, task.input,
+                           fmt::format("names {} files, and a rule writes models in one file each: put them into it",
+                                       task.more_outputs.size())};
+    task.model_output = refused;
+    task.more_outputs.clear();
+    return task;
+}
 
 bool writes_models(const FileOptions& files) { return names_model(files.output) || names_model(files.name); }
 
@@ -83,13 +115,9 @@ std::vector<Task> plan_models(std::vector<Input> inputs, const FileOptions& file
     std::vector<std::vector<ModelFile>> all_files;
     for (const Input& input : inputs) {
         Task task{input.name, output_for(input, files), *own.container};
-        task.engine = own.engine;
-        task.shared = rules.shared;
         task.joined = joined;
         task.joined_models.resize(joined.size());
-        if (rules.amend) rules.amend(task);
-        all_files.push_back(rules.lods ? set_lod_output(task, *rules.models, *rules.lods, options)
-                                       : set_model_output(task, *rules.models, rules.keeps_maps, options));
+        all_files.push_back(fill(task, own, rules, options));
         tasks.push_back(std::move(task));
     }
     leave_out_shared(tasks, all_files);

@@ -18,4 +18,9 @@ namespace tex::cli {
                                             const OutputOptions& output, const OutputRules& rules,
                                             const Command& command, const MeshReadOptions& options);
 
+// One such task, of a rule of a manifest, which knows its files from the manifest alone: the model is GLB and names no
+// files; another one is an error of its job. Throws UsageError as plan_models().
+[[nodiscard]] Task complete_model(Task task, const FileOptions& files, const OutputOptions& output,
+                                  const OutputRules& rules, const Command& command, const MeshReadOptions& options);
+
 }  // namespace tex::cli

@@ -17,6 +17,18 @@
 
 namespace tex::cli {
 
+// What becomes of models that get maps.
+struct ModelLods {
+    std::optional<TangentSource> tangents = {};  // as --tangents
+    bool occlusion = false;                      // they get it, too
+};
+
+// What becomes of models with the same maps on other tangents.
+struct ModelConversion {
+    TangentSource tangents = TangentSource::file;  // file: parts keep theirs
+    bool changes_maps = false;
+};
+
 // What a command specifies about its outputs.
 struct OutputRules {
     std::optional<Container> batch = {};  // with --out-dir: "{stem}" and its extension; none: the input's extension
@@ -29,8 +41,10 @@ struct OutputRules {
     std::optional<std::string> models = {};  // inputs may be models: the material whose maps are meant, or "" for all
     bool writes_models = false;              // such inputs can become models again: outputs that are called so
     bool keeps_maps = false;                 // of such models, some maps may stay as they are
-    // Such outputs get maps for each of their materials, and tangents as this says. None: other pictures alone.
-    std::optional<std::optional<TangentSource>> lods = {};
+    // Such outputs get maps for each of their materials. None: other pictures alone.
+    std::optional<ModelLods> lods = {};
+    // Such outputs get the tangents that this says, and their maps are converted or stay as they are.
+    std::optional<ModelConversion> conversion = {};
     std::vector<std::string> not_for_models = {};  // options without a meaning for such outputs
     // Inputs are meshes, and each of their materials gets an output: this returns them as inputs. May be empty.
     std::function<std::vector<Input>(const Input& input)> materials = {};

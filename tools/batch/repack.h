@@ -39,7 +39,10 @@ class PackCommand : public NormalsConverter {
 public:
     using NormalsConverter::NormalsConverter;
 
-    [[nodiscard]] std::optional<Step> step(Job& job) override { return all_options(job); }
+    // None for models, which are written as a whole.
+    [[nodiscard]] std::optional<Step> step(Job& job) override {
+        return job.task.model_output ? std::nullopt : std::optional<Step>(all_options(job));
+    }
 
 protected:
     // Adds the usage, the inputs, the files and the way normal maps are read. `inputs` is the help text of the inputs.

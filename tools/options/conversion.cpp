@@ -54,6 +54,7 @@ Result<ConvertedMap> ConversionOptions::convert(Job& job, const NormalMap& map, 
 Result<void> ConversionOptions::judge(Job& job, const ConvertedMap& converted, const std::string& mesh) const {
     job.report["covered"] = converted.covered;
     job.report["overlaps"] = converted.overlaps;
+    job.report["moved"] = converted.moved;
     job.report["backward"] = converted.backward;
     const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", converted.overlaps);
     if (converted.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, mesh, overlaps};

@@ -88,6 +88,16 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
     };
     add_files(command, colors_, "--high-color",
               "a texture for --color-out, of all parts or of those with this material; may be repeated");
+    Row& alpha = add_files(command, alphas_, "--high-alpha",
+                           "where this is below its cutoff, rays pass the high mesh, or its parts with this material; "
+                           "may be repeated; off: it is solid");
+    alpha.preset = "of materials with alphaMode MASK (glTF), their own";
+    alpha.take = [this, take = alpha.take](const std::string& text) {
+        if (text == "off")
+            is_solid_ = true;
+        else
+            take(text);
+    };
     command.choice(y_, "--high-y", "Y", kYAxisNames, "where green of --high-normals points").preset =
         "as the file says, else up";
     command.choice(decoder_, "--high-decoder", "D", kDecoderNames, "the engine that --high-normals are made for");
@@ -97,6 +107,7 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
         const auto is_for_all = [](const Assigned& file) { return file.material.empty(); };
         if (own_ && std::any_of(normals_.begin(), normals_.end(), is_for_all))
             throw UsageError("--high-normals", "a file for all materials, and own or off, contradict each other");
+        if (is_solid_ && !alphas_.empty()) throw UsageError("--high-alpha", "a file, and off, contradict each other");
         if (command.given("--high-color") != command.given("--color-out"))
             throw UsageError(command.given("--high-color") ? "--high-color needs --color-out"
                                                            : "--color-out needs --high-color");
@@ -104,7 +115,7 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
 }
 
 void HighDetailOptions::amend(Task& task) const {
-    for (const std::vector<Assigned>* files : {&normals_, &colors_}) {
+    for (const std::vector<Assigned>* files : {&normals_, &colors_, &alphas_}) {
         for (const Assigned& file : *files) task.own.push_back(path_of(file.pattern, task));
     }
 }
@@ -239,11 +250,87 @@ Result<void> HighDetailOptions::read_colors_of(Job& job, const HighParts& high, 
     return {};
 }
 
+namespace {
+
+// Alpha is the last of two or four channels. A file without it holds alpha itself.
+Result<Plane<float>> alpha_in(const std::string& file, ReadOptions how, bool is_mask) {
+    how.values = FileValues::unit;
+    auto image = read_image(file, how);
+    if (!image) return image.error();
+    const std::size_t count = image->planes.size();
+    if (count == 2 || count == 4) return std::move(image->planes.back());
+    if (!is_mask) return std::move(image->planes.front());
+    Plane<float> whole(Extent{1, 1});
+    whole.at(0, 0) = 1.0f;
+    return whole;
+}
+
+}  // namespace
+
+// The alpha of a material with holes. Null: it is solid.
+Result<const Plane<float>*> HighDetailOptions::alpha_of(Job& job, const PartAlpha& alpha, HighPictures& pictures,
+                                                        std::map<std::string, const Plane<float>*>& known) const {
+    if (!alpha.has_picture()) {
+        if (alpha.factor >= alpha.cutoff) return nullptr;
+        pictures.alphas.emplace_back(Extent{1, 1}).at(0, 0) = 0.0f;
+        return &pictures.alphas.back();
+    }
+    const Plane<float>*& plane = known[alpha.file];
+    if (plane != nullptr) return plane;
+    ReadOptions how = job.read_options;
+    how.bytes = alpha.bytes;
+    auto read = alpha_in(alpha.file, how, true);
+    if (!read) return read.error().of(alpha.file);
+    return plane = &pictures.alphas.emplace_back(std::move(*read));
+}
+
+Result<void> HighDetailOptions::read_alphas_of(Job& job, const HighParts& high, HighPictures& pictures) const {
+    if (auto known = check(alphas_, high, "--high-alpha"); !known) return known;
+    std::map<const Assigned*, const Plane<float>*> planes;
+    std::map<std::string, const Plane<float>*> own;
+    std::vector<std::string> blended;
+    for (std::size_t k = 0; k < high.parts.size(); ++k) {
+        const Assigned* const file = find(alphas_, high.materials[k]);
+        const PartAlpha& alpha = high.alphas[k];
+        HighDetail& detail = pictures.details[k];
+        if (file != nullptr) {
+            if (high.parts[k].uvs.empty()) return lacks(high, k, "UVs", "--high-alpha");
+            if (planes[file] == nullptr) {
+                auto read = alpha_in(path_of(file->pattern, job.task), job.read_options, false);
+                if (!read) return read.error();
+                planes[file] = &pictures.alphas.emplace_back(std::move(*read));
+            }
+            detail.alpha = planes[file];
+            detail.alpha_cutoff = static_cast<float>(alpha.mode == AlphaMode::mask ? alpha.cutoff : 0.5);
+            continue;
+        }
+        if (alpha.mode == AlphaMode::blend) blended.push_back(high.materials[k]);
+        if (alpha.mode != AlphaMode::mask || high.parts[k].uvs.empty()) continue;
+        const auto plane = alpha_of(job, alpha, pictures, own);
+        if (!plane) return plane.error();
+        detail.alpha = *plane;
+        detail.alpha_uv_set = alpha.has_picture() ? static_cast<int>(high.parts[k].uvs.size()) - 1 : 0;
+        // Texels are multiplied by the factor.
+        detail.alpha_cutoff = alpha.factor > 0.0 ? static_cast<float>(alpha.cutoff / alpha.factor) : 2.0f;
+    }
+    if (blended.empty()) return {};
+    job.remark(
+        fmt::format("rays meet what blends with its background as if it were solid (material {}); --high-alpha "
+                    "FILE makes holes",
+                    quoted_list(blended)));
+    return {};
+}
+
 Result<HighPictures> HighDetailOptions::read(Job& job, const HighParts& high) const {
     HighPictures pictures;
     const auto is_own = [](const std::shared_ptr<const ModelInput>& map) { return map != nullptr; };
-    if (is_given() || std::any_of(high.maps.begin(), high.maps.end(), is_own)) {
+    const auto has_alpha = [](const PartAlpha& alpha) { return alpha.mode != AlphaMode::opaque; };
+    const bool any_alpha = takes_alpha() && std::any_of(high.alphas.begin(), high.alphas.end(), has_alpha);
+    if (is_given() || any_alpha || std::any_of(high.maps.begin(), high.maps.end(), is_own)) {
         pictures.details.resize(high.parts.size());
+        if (takes_alpha()) {
+            if (auto done = read_alphas_of(job, high, pictures); !done) return done.error();
+        }
         if (auto done = read_normals_of(job, high, pictures); !done) return done.error();
         if (auto done = read_colors_of(job, high, pictures); !done) return done.error();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// high_details.h: the option group of pictures on the high mesh: --high-normals, --high-color, --high-y,
+// high_details.h: the option group of pictures on the high mesh: --high-normals, --high-color, --high-alpha, --high-y,
 // --high-decoder.
 
 #pragma once
@@ -23,6 +23,7 @@ namespace tex::cli {
 struct HighPictures {
     std::list<NormalMap> normals;
     std::list<Image> colors;
+    std::list<Plane<float>> alphas;
     std::list<std::vector<Float4>> tangents;
     std::map<const ModelInput*, const NormalMap*> own;
     Extent largest_own{0, 0};         // of the high meshes' own maps
@@ -36,9 +37,12 @@ public:
 
     [[nodiscard]] bool has_colors() const { return !colors_.empty(); }
     // Whether parts must keep their UVs.
-    [[nodiscard]] bool is_given() const { return !colors_.empty() || !normals_.empty(); }
+    [[nodiscard]] bool is_given() const { return !colors_.empty() || !normals_.empty() || !alphas_.empty(); }
     // Whether the high meshes' own normal maps count.
     [[nodiscard]] bool takes_own() const { return own_.value_or(implies_own_()); }
+
+    // Whether alpha of the high meshes' materials makes holes.
+    [[nodiscard]] bool takes_alpha() const { return !is_solid_; }
 
     // Adds the files to the task.
     void amend(Task& task) const;
@@ -60,11 +64,16 @@ private:
     [[nodiscard]] Result<void> read_normals_of(Job& job, const HighParts& high, HighPictures& pictures) const;
     [[nodiscard]] Result<void> read_colors_of(Job& job, const HighParts& high, HighPictures& pictures) const;
 
+    [[nodiscard]] Result<void> read_alphas_of(Job& job, const HighParts& high, HighPictures& pictures) const;
+    [[nodiscard]] Result<const Plane<float>*> alpha_of(Job& job, const PartAlpha& alpha, HighPictures& pictures,
+                                                       std::map<std::string, const Plane<float>*>& known) const;
+
     [[nodiscard]] Result<void> add_own(Job& job, const HighParts& high, std::size_t k, HighPictures& pictures) const;
     static void note_unused(Job& job, const HighParts& high, const HighPictures& pictures);
     [[nodiscard]] Result<const NormalMap*> own_map(Job& job, const ModelInput& map, HighPictures& pictures) const;
 
-    std::vector<Assigned> normals_, colors_;
+    std::vector<Assigned> normals_, colors_, alphas_;
+    bool is_solid_ = false;
     std::optional<bool> own_;
     std::function<bool()> implies_own_;
     std::optional<YAxis> y_;

@@ -32,6 +32,13 @@ std::string quoted_list(const std::vector<std::string>& names) {
     return text;
 }
 
+bool has_cutouts(const std::string& model, const MeshReadOptions& options) {
+    if (!is_model(model)) return false;
+    const auto read = read_model_maps(model, options);
+    return read && std::any_of(read->mesh.materials.begin(), read->mesh.materials.end(),
+                               [](const MeshMaterial& material) { return material.alpha_mode == AlphaMode::mask; });
+}
+
 std::size_t HighParts::triangles() const {
     std::size_t sum = 0;
     for (std::size_t k = 0; k < standing(); ++k) sum += parts[part_of(k)].triangles();
@@ -142,14 +149,22 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         auto mesh = read_mesh(name, how);
         if (!mesh) return mesh.error().of(name);
         for (const std::string& remark : mesh->remarks) high.remarks.push_back({name, remark});
+        std::vector<PartAlpha> alphas;  // of the materials
+        for (const MeshMaterial& of : mesh->materials) alphas.push_back({of.alpha_mode, of.alpha_cutoff, of.alpha});
+        if (wanted.alpha && is_model(name)) {
+            if (auto done = read_alphas(name, how, *mesh, alphas); !done) return done.error().of(name);
+        }
         std::map<int, std::shared_ptr<const ModelInput>> maps;
         if (wanted.maps && is_model(name)) {
             if (auto done = read_maps(name, how, *mesh, maps); !done) return done.error().of(name);
         }
+        const auto has_picture = [&](const MeshPart& part) {
+            return part.material >= 0 && alphas[static_cast<std::size_t>(part.material)].has_picture();
+        };
         for (MeshPart& part : mesh->parts) {
             if (wanted.uvs || maps.contains(part.material)) continue;
-            part.uvs.clear();
             part.tangents.clear();
+            if (!has_picture(part)) part.uvs.clear();
         }
         const std::vector<MeshMaterial> materials = mesh->materials;
         units_.place(*mesh);
@@ -159,6 +174,7 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         for (MeshPart& part : placed->parts) {
             const bool has_material = part.material >= 0 && static_cast<std::size_t>(part.material) < materials.size();
             high.materials.push_back(has_material ? materials[static_cast<std::size_t>(part.material)].name : "");
+            high.alphas.push_back(has_material ? alphas[static_cast<std::size_t>(part.material)] : PartAlpha{});
             high.has_maps.push_back(has_material && materials[static_cast<std::size_t>(part.material)].has_normal_map);
             const auto map = maps.find(part.material);
             high.maps.push_back(map == maps.end() ? nullptr : map->second);
@@ -169,6 +185,39 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         ++file;
     }
     return high;
+}
+
+// Pictures of alpha for the parts whose materials have holes. Each gets a set of UVs for it, because the normal map may
+// move the others elsewhere; this comes before the maps.
+Result<void> HighMeshes::read_alphas(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
+                                     std::vector<PartAlpha>& alphas) {
+    const auto is_mask = [](const PartAlpha& alpha) { return alpha.mode == AlphaMode::mask; };
+    if (std::none_of(alphas.begin(), alphas.end(), is_mask)) return {};
+    MeshReadOptions how = options;
+    how.images = true;
+    const auto read = read_model_maps(name, how);
+    if (!read) return read.error();
+    const auto model = std::make_shared<const Model>(*read);
+    for (const ModelTexture& texture : model->textures) {
+        const bool is_base = texture.slot == "baseColorTexture" || texture.slot == "diffuseTexture";
+        if (!is_base || texture.image < 0) continue;
+        PartAlpha& alpha = alphas[static_cast<std::size_t>(texture.material)];
+        const ModelImage& image = model->images[static_cast<std::size_t>(texture.image)];
+        if (!is_mask(alpha) || alpha.has_picture()) continue;
+        if (image.error) return *image.error;
+        alpha.file = image.file.empty() ? name + ": " + image.name : image.file;
+        if (image.file.empty()) alpha.bytes = std::shared_ptr<const std::vector<std::byte>>(model, &image.bytes);
+        for (MeshPart& part : mesh.parts) {
+            if (part.material != texture.material || static_cast<std::size_t>(texture.uv_set) >= part.uvs.size())
+                continue;
+            part.uvs.push_back(part.uvs[static_cast<std::size_t>(texture.uv_set)]);
+            const int added = static_cast<int>(part.uvs.size()) - 1;
+            auto moved = with_moved_uvs(std::move(part), added, texture.uv_transform);
+            if (!moved) return moved.error();
+            part = std::move(*moved);
+        }
+    }
+    return {};
 }
 
 // The maps by material; UVs of parts are moved as they say.

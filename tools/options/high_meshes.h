@@ -32,6 +32,18 @@ inline constexpr Named<Match> kMatchNames[] = {
     {Match::material, "material", "the same with the names of materials"},
 };
 
+// What the alpha of a material makes of a part.
+struct PartAlpha {
+    AlphaMode mode = AlphaMode::opaque;
+    double cutoff = 0.5, factor = 1.0;  // which alpha is multiplied by
+    // The picture of a model, if alpha was asked for; neither: it is 1 everywhere.
+    std::string file = {};
+    std::shared_ptr<const std::vector<std::byte>> bytes = {};
+    // Parts with a picture have a set of UVs more, the last one, which lies where the material puts it.
+
+    [[nodiscard]] bool has_picture() const { return bytes != nullptr || !file.empty(); }
+};
+
 // The parts that rays may hit, and what their files say about each.
 struct HighParts {
     std::vector<MeshPart> parts;
@@ -39,6 +51,7 @@ struct HighParts {
     std::vector<bool> has_maps;          // whether the material of a part has a normal map
     // The map, if the parts were read for it, and it is in a model: their UVs lie where it puts them. Else null.
     std::vector<std::shared_ptr<const ModelInput>> maps;
+    std::vector<PartAlpha> alphas;     // of the materials
     std::vector<int> files;            // the number of the file
     std::vector<PartPlace> places;     // where they stand; empty: where they are stored (TransferInputs::high_places)
     std::vector<std::string> names;    // of the files
@@ -57,6 +70,9 @@ struct HighParts {
     // Adds what places_in_scene() says of parts that are still to be added.
     void add_places(const std::vector<MeshPart>& added, std::vector<PartPlace> of_added);
 };
+
+// Whether alpha makes holes in a model (alphaMode MASK). False if it cannot be read.
+[[nodiscard]] bool has_cutouts(const std::string& model, const MeshReadOptions& options);
 
 // The first names, each once, in quotes, for a message.
 [[nodiscard]] std::string quoted_list(const std::vector<std::string>& names);
@@ -80,7 +96,8 @@ public:
     struct Wanted {
         bool uvs = false;  // and tangents
         bool colors = false;
-        bool maps = false;  // of the materials, in models
+        bool maps = false;   // of the materials, in models
+        bool alpha = false;  // likewise
     };
 
     // Reads the meshes of a job, as the nodes of their scenes place them. Jobs for the tiles of a low mesh share them.
@@ -102,6 +119,8 @@ private:
     [[nodiscard]] Error with_limit(const Error& error) const;
     [[nodiscard]] Result<void> read_maps(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
                                          std::map<int, std::shared_ptr<const ModelInput>>& maps) const;
+    [[nodiscard]] static Result<void> read_alphas(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
+                                                  std::vector<PartAlpha>& alphas);
     [[nodiscard]] Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
                                          const Wanted& wanted) const;
 

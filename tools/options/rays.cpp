@@ -114,8 +114,9 @@ void RayOptions::add_second(Command& command) {
               "how far they reach: a length as --front, or the word", "without limit", "auto");
     command.check([&command] {
         const auto idle = command.given_of({"--rays-per-hit", "--occlusion-distance"});
-        if (!idle.empty() && command.given_of({"--occlusion-out", "--bent-out", "--thickness-out"}).empty())
-            throw UsageError(idle.front() + " needs --occlusion-out, --bent-out or --thickness-out");
+        const auto users = command.given_of({"--occlusion-out", "--occlusion-into", "--bent-out", "--thickness-out"});
+        if (!idle.empty() && users.empty())
+            throw UsageError(idle.front() + " needs --occlusion-out, --occlusion-into, --bent-out or --thickness-out");
     });
 }
 
@@ -166,6 +167,7 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps, const std:
     const double missed = percent_of(maps.missed, maps.covered);
     job.report["covered"] = maps.covered;
     job.report["overlaps"] = maps.overlaps;
+    job.report["moved"] = maps.moved;
     job.report["backward"] = maps.backward;
     job.report["missed"] = {{"texels", maps.missed},
                             {"percent", missed},
@@ -234,6 +236,13 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
     occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed")
         .often(2, "write ambient occlusion");
+    Row& into = command.option("--occlusion-into", "WHERE",
+                               "put ambient occlusion into the output:", [this](const std::string& text) {
+                                   if (text != "model") throw UsageError("must be model");
+                                   occlusion_into_model_ = true;
+                               });
+    into.words = {{"model", "into the red of each material's texture of roughness, or a texture of its own"}};
+    into.completes = Completes::words;
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open, in tangent space");
     thickness_.add(command, files, "--thickness-out", "write the mean thickness of the high mesh, stored as heights");
     color_.add(command, files, "--color-out", "write the colours that --high-color names");

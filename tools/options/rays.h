@@ -74,13 +74,15 @@ private:
 // "rays reach 0.1 in front and 0.2 behind; heights are from -0.05 to 0.06"
 [[nodiscard]] std::string reach_of(const TransferredMaps& maps);
 
-// --object-out, --height-out, --position-out, --occlusion-out, --bent-out, --thickness-out, --color-out,
-// --vertex-color-out, --missed-out.
+// --object-out, --height-out, --position-out, --occlusion-out, --occlusion-into, --bent-out, --thickness-out,
+// --color-out, --vertex-color-out, --missed-out.
 class TransferMaps {
 public:
     void add(Command& command, const FileOptions& files);
     void amend(Task& task) const;
     [[nodiscard]] bool wants_vertex_colors() const { return vertex_color_.is_given(); }
+    // Whether models get occlusion.
+    [[nodiscard]] bool puts_occlusion_into_model() const { return occlusion_into_model_; }
     // Sets the maps that are wanted.
     void request(TransferOptions& options) const;
 
@@ -98,6 +100,7 @@ private:
                                                    Json& report);
     [[nodiscard]] static Result<void> write_colors(Job& job, const MapOutput& output, Image colors, const char* key);
 
+    bool occlusion_into_model_ = false;
     MapOutput object_, heights_, positions_, occlusion_, bent_, thickness_, color_, vertex_color_, missed_out_;
 };
 

@@ -221,6 +221,10 @@ std::vector<std::string> TangentSpaceOptions::files() const {
     return files;
 }
 
+bool TangentSpaceOptions::changes_models() const {
+    return decoder_ != input_decoder(true) || (tangents_in_ && tangents_in_ != tangents_);
+}
+
 // A model's maps are for glTF's decoder, unless they are only looked at.
 Decoder TangentSpaceOptions::input_decoder(bool of_model) const {
     return decoder_in_.value_or(of_model && converts_ ? Decoder::gltf : decoder_);

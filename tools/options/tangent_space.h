@@ -85,6 +85,8 @@ public:
     [[nodiscard]] const std::string& material() const { return selection_.material; }
     [[nodiscard]] Decoder decoder() const { return decoder_; }
     [[nodiscard]] std::optional<TangentSource> tangents() const { return tangents_; }
+    // Whether the maps of a model that is written again are converted.
+    [[nodiscard]] bool changes_models() const;
     // Whether the engine that decodes the input ignores its z, so that x and y must be read as they are stored.
     [[nodiscard]] bool ignores_z(bool of_model) const {
         return from == Space::tangent && rebuilds_z(input_decoder(of_model));

@@ -327,8 +327,30 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
 
 }  // namespace
 
+namespace {
+
+// The command that gives the parts of a model the tangents of MikkTSpace; none for other findings.
+std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report) {
+    const std::string_view id = finding.rule->id;
+    const std::string type = report.map.empty() ? "" : type_of_model(report);
+    if (type.empty() || !is_any_of(id, {"N701", "N702", "N703", "N704", "N705", "N706"})) return std::nullopt;
+    const std::string material = id == "N701" ? "" : " --material " + shell_word(report.material);
+    Fix fix{
+        fmt::format("convert-normals {}{} --tangents mikktspace -o FIXED{}", shell_file(report.file), material, type),
+        true};
+    if (id == "N705") {
+        fix.advice =
+            "That is right if the map was baked for MikkTSpace on triangles, as most bakers do; leave the tangents if "
+            "it was baked for those of the file, as in Blender, which makes them on quads";
+    }
+    return fix;
+}
+
+}  // namespace
+
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
+    if (auto fix = tangent_fix(finding, report)) return *fix;
     if (std::string command = repair_command(finding, report, require); !command.empty())
         return {std::move(command), true, id == "N220" ? kInvertedAdvice : ""};
     if (finding.rule->fix.starts_with(kRepair)) return {"Export the map again from its source."};

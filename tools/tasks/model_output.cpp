@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -77,6 +78,7 @@ Result<ModelOutput> maps_to_write(const std::string& input, const std::string& m
 ModelChanges ModelOutput::changes(Container container) const {
     ModelChanges all;
     for (const auto& group : images) {
+        if (keeps_maps) break;
         ModelPicture& picture = all.pictures.emplace_back();
         picture.container = container;
         picture.sets_slots = is_lod;
@@ -84,6 +86,12 @@ ModelChanges ModelOutput::changes(Container container) const {
             picture.maps.push_back(*map->map);
             if (is_lod) picture.maps.back().scale = 1.0;
         }
+    }
+    for (std::size_t k = 0; k < occlusion.size(); ++k) {
+        ModelPicture& picture = all.pictures.emplace_back();
+        picture.container = container == Container::webp ? container : Container::png;
+        picture.maps = {*images[k].front()->map};
+        picture.use = occlusion[k].use;
     }
     all.tangents = tangents;
     return all;
@@ -114,14 +122,8 @@ std::vector<ModelFile> set_output(Task& task, Result<ModelOutput> made, bool may
     return (*files)->files;
 }
 
-Result<ModelOutput> lod_of(const std::string& input, const std::string& material, std::optional<TangentSource> tangents,
-                           const MeshReadOptions& options) {
-    ModelOutput output;
-    output.is_lod = true;
-    for (const auto& map : materials_of_model(input, material, options)) {
-        if (map->error) return *map->error;
-        output.images.push_back({map});
-    }
+// Finds the parts that get tangents.
+Result<void> find_tangents(ModelOutput& output, std::optional<TangentSource> tangents, const MeshReadOptions& options) {
     const auto model = output.images.front().front()->read(LastModel::Part::all, options.reader);
     if (!model) return model.error();
     std::set<std::pair<int, int>> known;
@@ -131,7 +133,64 @@ Result<ModelOutput> lod_of(const std::string& input, const std::string& material
                 output.tangents.push_back({part->mesh, part->primitive, {}});
         }
     }
+    return {};
+}
+
+// The red of the texture of roughness is free for occlusion, unless that has another one already. Its UVs must be those
+// of the map.
+ModelOcclusion occlusion_of(const Model& model, const ModelMap& map) {
+    const ModelTexture *occlusion = nullptr, *roughness = nullptr;
+    for (const ModelTexture& texture : model.textures) {
+        if (texture.material != map.material || !texture.extension.empty()) continue;
+        if (texture.slot == "occlusionTexture") occlusion = &texture;
+        if (texture.slot == "metallicRoughnessTexture") roughness = &texture;
+    }
+    const bool fits = roughness != nullptr && roughness->image >= 0 && roughness->uv_set == map.uv_set &&
+                      roughness->uv_transform == map.uv_transform &&
+                      (occlusion == nullptr || occlusion->image == roughness->image);
+    return fits ? ModelOcclusion{PictureUse::orm, roughness->image} : ModelOcclusion{};
+}
+
+Result<ModelOutput> lod_of(const std::string& input, const std::string& material, std::optional<TangentSource> tangents,
+                           bool occlusion, const MeshReadOptions& options) {
+    ModelOutput output;
+    output.is_lod = true;
+    for (const auto& map : materials_of_model(input, material, options)) {
+        if (map->error) return *map->error;
+        output.images.push_back({map});
+    }
+    if (auto found = find_tangents(output, tangents, options); !found) return found.error();
+    if (!occlusion) return output;
+    const auto model = output.images.front().front()->read(LastModel::Part::all, options.reader);
+    if (!model) return model.error();
+    for (const auto& group : output.images) output.occlusion.push_back(occlusion_of(**model, *group.front()->map));
     return output;
+}
+
+// Each map gets a picture of its own, because maps of different triangles become different ones.
+Result<ModelOutput> conversion_of(const std::string& input, const std::string& material, TangentSource tangents,
+                                  bool changes_maps, const MeshReadOptions& options) {
+    auto output = maps_to_write(input, material, options);
+    if (!output) return output.error();
+    output->is_lod = true;
+    output->keeps_maps = !changes_maps;
+    std::vector<std::vector<std::shared_ptr<const ModelInput>>> single;
+    for (const auto& group : std::exchange(output->images, {})) {
+        for (const auto& map : group) single.push_back({map});
+    }
+    output->images = std::move(single);
+    if (auto found = find_tangents(*output, tangents, options); !found) return found.error();
+    if (output->keeps_maps && output->tangents.empty())
+        return Error{ErrorCode::bad_option, input, "no triangle with a normal map has UVs and normals"};
+    return output;
+}
+
+// A part has one tangent for all of its maps.
+void warn_of_other_uvs(Job& job, const ModelInput& first, const ModelInput& other) {
+    if (first.map->uv_set == other.map->uv_set && first.map->uv_transform == other.map->uv_transform) return;
+    job.warn(fmt::format("is on triangles of {}, whose UVs lie elsewhere; the tangents are made for those",
+                         printable(first.field)),
+             other.name());
 }
 
 }  // namespace
@@ -142,26 +201,36 @@ std::vector<ModelFile> set_model_output(Task& task, const std::string& material,
 }
 
 std::vector<ModelFile> set_lod_output(Task& task, const std::string& material, std::optional<TangentSource> tangents,
-                                      const MeshReadOptions& options) {
-    return set_output(task, lod_of(task.input, material, tangents, options), false, options);
+                                      bool occlusion, const MeshReadOptions& options) {
+    return set_output(task, lod_of(task.input, material, tangents, occlusion, options), false, options);
 }
 
-Result<std::vector<ModelTangents>> tangents_for(const Job& job, const ModelChanges& changes,
+std::vector<ModelFile> set_converted_output(Task& task, const std::string& material, TangentSource tangents,
+                                            bool changes_maps, const MeshReadOptions& options) {
+    return set_output(task, conversion_of(task.input, material, tangents, changes_maps, options), false, options);
+}
+
+Result<std::vector<ModelTangents>> tangents_for(Job& job, const ModelChanges& changes,
                                                 std::optional<TangentSource> tangents) {
     const TangentMethod method =
         tangents == TangentSource::meshopt ? TangentMethod::meshopt : TangentMethod::mikktspace;
     std::vector<ModelTangents> all;
-    std::set<std::pair<int, int>> known;
+    std::map<std::pair<int, int>, const ModelInput*> known;
     for (const auto& group : job.task.model_output->images) {
         const ModelInput& material = *group.front();
         const auto is_made = [&](const ModelPicture& picture) {
             return picture.maps.front().material == material.map->material;
         };
-        if (std::none_of(changes.pictures.begin(), changes.pictures.end(), is_made)) continue;
+        const bool keeps = job.task.model_output->keeps_maps;
+        if (!keeps && std::none_of(changes.pictures.begin(), changes.pictures.end(), is_made)) continue;
         const auto model = material.read(LastModel::Part::all, job.read_options);
         if (!model) return model.error();
         for (const MeshPart* const part : material.parts_without(**model, tangents)) {
-            if (!known.emplace(part->mesh, part->primitive).second) continue;
+            const auto [first, is_new] = known.emplace(std::pair(part->mesh, part->primitive), &material);
+            if (!is_new) {
+                warn_of_other_uvs(job, *first->second, material);
+                continue;
+            }
             const auto moved = with_moved_uvs(*part, material.map->uv_set, material.map->uv_transform);
             if (!moved) return moved.error().of(material.name());
             auto made = make_tangents(*moved, method, material.map->uv_set, {job.threads(), {}});
@@ -170,6 +239,28 @@ Result<std::vector<ModelTangents>> tangents_for(const Job& job, const ModelChang
         }
     }
     return all;
+}
+
+Result<void> make_pictures(Job& job, ModelChanges& changes,
+                           const std::function<Result<bool>(Job& one, ModelPicture& picture)>& make) {
+    const ModelOutput& model = *job.task.model_output;
+    for (std::size_t k = 0; k < model.images.size() && !model.keeps_maps; ++k) {
+        Task task = job.task;
+        task.model_output = nullptr;
+        task.model = model.images[k].front();
+        const auto count = static_cast<double>(model.images.size());
+        const auto advance = [&](double done, const std::string&) {
+            return job.reached(0.95 * (static_cast<double>(k) + done) / count);
+        };
+        Job one(task, job.console, job.read_options, job.write_options, job.threads(), advance);
+        const auto made = make(one, changes.pictures[k]);
+        if (!made) return made.error();
+        job.take(one);
+        if (*made) job.report["maps"].push_back(std::move(one.report));
+    }
+    std::erase_if(changes.pictures, [](const ModelPicture& picture) { return picture.bytes.empty(); });
+    if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
+    return {};
 }
 
 Result<void> write_model_output(Job& job, const ModelChanges& changes) {

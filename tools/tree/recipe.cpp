@@ -15,6 +15,7 @@
 #include "cli/foreign_words.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "tasks/model_output.h"
 #include "tasks/udim.h"
 
 namespace tex::cli {
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSuffix = "-normals";
+constexpr const char* kModel = "a model";
 constexpr const char* kOutputGroup = "Output";
 constexpr const char* kDataGroup = "Data beside the normals";
 
@@ -196,7 +198,10 @@ std::string_view Recipe::format_between(const std::vector<std::string>& argument
 // The program that has read these arguments.
 std::shared_ptr<Program> Recipe::parsed(const StepSettings& step, std::vector<std::string> line, const std::string& out,
                                         Console& console) const {
-    std::shared_ptr<Program>& program = pool_.program_for(step.command, line);
+    // A program knows whether its outputs are models.
+    std::vector<std::string> known = line;
+    if (names_model(out)) known.emplace_back(kModel);
+    std::shared_ptr<Program>& program = pool_.program_for(step.command, known);
     if (program) return program;
     const ProgramRow* const row = find_program(step.command + kSuffix);
     std::shared_ptr<Program> made = row->make(*row);

@@ -34,16 +34,6 @@ namespace tex::inline v1 {
 //
 // This is glTF's convention, and that of MikkTSpace if v points up.
 
-struct Float2 {
-    float x = 0.0f, y = 0.0f;
-};
-struct Float3 {
-    float x = 0.0f, y = 0.0f, z = 0.0f;
-};
-struct Float4 {
-    float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
-};
-
 // Triangles that share a material: a primitive of glTF, or the faces of one object and material of OBJ.
 //
 // positions, normals, tangents, colors and each set of uvs have one element for each vertex. Normals, tangents and
@@ -75,21 +65,6 @@ struct MeshPart {
     }
 };
 
-// How a material moves UVs before it looks up a texture (glTF's KHR_texture_transform). With c and s the cosine and the
-// sine of `rotation`, and v pointing down,
-//
-//     u' =  c scale_x u + s scale_y v + offset_x
-//     v' = -s scale_x u + c scale_y v + offset_y
-//
-// A mesh keeps the UVs that its file stores; select_part() moves them.
-struct UvTransform {
-    double offset_x = 0.0, offset_y = 0.0;
-    double rotation = 0.0;  // radians
-    double scale_x = 1.0, scale_y = 1.0;
-
-    friend bool operator==(const UvTransform&, const UvTransform&) = default;
-};
-
 struct MeshMaterial {
     std::string name;
     std::string normal_map;       // the path of the normal map as the file states it; empty: none, or inside the file
@@ -98,6 +73,9 @@ struct MeshMaterial {
     // The one of the normal map. Without one, that which all textures of the material share.
     UvTransform uv_transform = {};
     bool mixed_transforms = false;  // there is no normal map, and the other textures differ in this
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    double alpha_cutoff = 0.5;
+    double alpha = 1.0;  // by which the alpha of textures is multiplied
 };
 
 // A place where a mesh stands in the scene.
@@ -177,6 +155,8 @@ struct MeshReadOptions {
     std::int64_t max_bytes = std::int64_t{4} << 30;
     // Read colours of vertices, which only transfer() uses.
     bool colors = false;
+    // Read the bytes of all images in a model, not only those of normal maps.
+    bool images = false;
 };
 
 // Reads a mesh. `path` "-" reads standard input; glTF from there can have no buffers in other files. Every part of the
@@ -496,6 +476,7 @@ struct ConvertedMap {
     Plane<Coverage> coverage;
     std::int64_t covered = 0;    // texels that triangles cover
     std::int64_t overlaps = 0;   // those (subsamples, if there are any) that several triangles cover: the first decides
+    std::int64_t moved = 0;      // those that triangles from outside of 0 to 1 cover, too, and do not decide
     std::int64_t backward = 0;   // those whose z is negative in tangent space, so that most encodings cannot hold them
     std::int64_t singular = 0;   // those where T', B' and N' lie in one plane: they are (0, 0, 1) in tangent space
     std::int64_t unmatched = 0;  // refit() only: those that no triangle of the first space covers
@@ -504,7 +485,9 @@ struct ConvertedMap {
 // Converts a map.
 //
 // A texel belongs to the triangle whose UVs contain its centre; of two triangles that share an edge, exactly one does.
-// The map repeats, so UVs may be outside of 0 to 1. Corners are rounded to 1/256 texel.
+// The map repeats, so UVs may be outside of 0 to 1. Where several triangles cover a texel, those between 0 and 1 come
+// before those that lie elsewhere and repeat there, so that shells which were moved by whole units decide nothing; then
+// the first one of the part counts. Corners are rounded to 1/256 texel.
 //
 // With n subsamples, a texel is divided into n x n squares. Each belongs to a triangle as a texel does, and converts
 // the texel's normal with its own T', B' and N'. The texel becomes the normalised sum of those that triangles cover,
@@ -673,6 +656,7 @@ struct TransferredMaps {
     std::int64_t covered = 0;   // hit or missed
     std::int64_t missed = 0;    // no ray of theirs hit
     std::int64_t overlaps = 0;  // samples that several triangles of the low mesh cover: the first decides
+    std::int64_t moved = 0;     // samples that triangles from outside of 0 to 1 cover, too, and do not decide
     std::int64_t backward = 0;  // z is negative in tangent space, so that most encodings cannot hold them
     std::int64_t singular = 0;  // the low mesh has no tangent space there: they are (0, 0, 1)
     std::int64_t behind = 0;    // samples whose rays hit, or would hit, only triangles seen from behind
@@ -704,7 +688,12 @@ struct HighDetail {
     Decoder decoder = Decoder::gltf;
     // Its colours: one plane is grey, of more the first three count. Null: the part is white.
     const Image* color = nullptr;
-    int uv_set = 0;
+    int uv_set = 0;  // of both
+    // Where this is below the cutoff, at its own set of UVs, there is nothing, and rays pass. Null: the part is solid.
+    // A ray passes at most 64 triangles.
+    const Plane<float>* alpha = nullptr;
+    float alpha_cutoff = 0.5f;
+    int alpha_uv_set = 0;
 };
 
 // What transfer() may be given beside the two meshes. What pointers show must stay as it is until it returns.
@@ -810,11 +799,22 @@ struct ModelMap {
     bool is_double_sided = false;  // the material
 };
 
+// A slot of a material that uses a texture of any kind.
+struct ModelTexture {
+    int material = 0;       // an index into Mesh::materials
+    std::string slot;       // "baseColorTexture"
+    std::string extension;  // of glTF, such as KHR_materials_clearcoat, that has the slot; may be empty
+    int image = -1;         // an index into Model::images; -1: none that libtex knows
+    int uv_set = 0;
+    UvTransform uv_transform = {};
+};
+
 struct Model {
     std::string file;  // its path
     Mesh mesh;
     std::vector<ModelImage> images;
-    std::vector<ModelMap> maps;  // by material, then slot
+    std::vector<ModelMap> maps;               // by material, then slot
+    std::vector<ModelTexture> textures = {};  // by material
 };
 
 // Whether a file begins as a glTF model does, as text or as GLB, or is called .gltf or .glb and begins as no other type
@@ -822,9 +822,9 @@ struct Model {
 [[nodiscard]] TEX_API bool is_model(const std::string& path);
 
 // Reads a model: its meshes as read_mesh(), and the bytes of those images that are inside it and that a normal slot
-// uses. Of the sources of a texture, the first that is there counts: KHR_texture_basisu, MSFT_texture_dds,
-// EXT_texture_webp, else the texture's own. An image in a file must be in the folder of the model or below it, as
-// buffers must.
+// uses, or of all with MeshReadOptions::images. Of the sources of a texture, the first that is there counts:
+// KHR_texture_basisu, MSFT_texture_dds, EXT_texture_webp, else the texture's own. An image in a file must be in the
+// folder of the model or below it, as buffers must.
 //
 // Errors: those of read_mesh(); unsupported (the file is not glTF; it is "-").
 [[nodiscard]] TEX_API Result<Model> read_model(const std::string& path, const MeshReadOptions& options = {});

@@ -407,7 +407,17 @@ struct StepsReport {
 // with the extension of its type. In the folder of the input, and where the name belongs to another file of the model,
 // its name begins with the stem of the output: "fixed_stone_n.png".
 
+// Which slots of a material get a picture.
+enum class PictureUse {
+    normals,    // the slot of the map
+    occlusion,  // occlusionTexture, which reads red
+    orm,        // occlusionTexture and metallicRoughnessTexture, which reads green and blue
+};
+
 // A picture that some maps of a model get. All of them have the same image, or images of the same file or bytes.
+//
+// Occlusion is for the materials of the maps, which need no image then: `slot` and `scale` do not count, and sets of
+// UVs and transforms become those of the maps. A material without the slots gets them.
 struct ModelPicture {
     std::vector<ModelMap> maps;
     Container container = Container::png;  // png, jpeg, webp, or ktx2 with UASTC
@@ -415,6 +425,7 @@ struct ModelPicture {
     // Whether the slots get scale, uv_set and uv_transform of `maps`, too. Then materials without a normal map, of
     // which ModelMap::image is -1, get one.
     bool sets_slots = false;
+    PictureUse use = PictureUse::normals;
 };
 
 // Tangents that a part gets.

@@ -549,4 +549,42 @@ struct AngularError {
     int max_row = 0;
 };
 
+// -- materials -----------------------------------------------------------------------------------------------------
+//
+// Coordinates of meshes, and what a material says about its textures.
+
+struct Float2 {
+    float x = 0.0f, y = 0.0f;
+};
+struct Float3 {
+    float x = 0.0f, y = 0.0f, z = 0.0f;
+};
+struct Float4 {
+    float x = 0.0f, y = 0.0f, z = 0.0f, w = 0.0f;
+};
+
+// How a material moves UVs before it looks up a texture (glTF's KHR_texture_transform). With c and s the cosine and the
+// sine of `rotation`, and v pointing down,
+//
+//     u' =  c scale_x u + s scale_y v + offset_x
+//     v' = -s scale_x u + c scale_y v + offset_y
+//
+// A mesh keeps the UVs that its file stores; select_part() moves them.
+struct UvTransform {
+    double offset_x = 0.0, offset_y = 0.0;
+    double rotation = 0.0;  // radians
+    double scale_x = 1.0, scale_y = 1.0;
+
+    friend bool operator==(const UvTransform&, const UvTransform&) = default;
+};
+
+// What alpha of a material's base colour means (glTF 2.0, 3.9.4).
+enum class AlphaMode { opaque, mask, blend };
+
+inline constexpr Named<AlphaMode> kAlphaModeNames[] = {
+    {AlphaMode::opaque, "opaque", "nothing"},
+    {AlphaMode::mask, "mask", "what is below the cutoff is not there"},
+    {AlphaMode::blend, "blend", "how much covers what is behind"},
+};
+
 }  // namespace tex::inline v1

@@ -61,7 +61,8 @@ StripSums sums_of(Covering& mesh, int strip, const CheckContext& context) {
     const Stored& stored = context.stored;
     StripSums sums;
     std::vector<Covered> texels;
-    sums.overlaps = mesh.coverage.cover(strip, texels);
+    const Overlaps overlaps = mesh.coverage.cover(strip, texels);
+    sums.overlaps = overlaps.same + overlaps.moved;
     const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
     const int width = stored.extent().width;
     for (std::size_t k = 0; k < texels.size(); ++k) {

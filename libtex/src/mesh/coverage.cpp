@@ -109,7 +109,7 @@ Result<void> CoverageMap::place(const MeshPart& part, const std::vector<Float2>&
     for (std::int64_t j = repeat(low.y - margin_y); j <= repeat(high.y + margin_y); ++j) {
         for (std::int64_t i = repeat(low.x - margin_x); i <= repeat(high.x + margin_x); ++i) {
             const auto left = static_cast<double>(i), top = static_cast<double>(j);
-            Placed placed{triangle, {}, {}};
+            Placed placed{triangle, {}, {}, i != 0 || j != 0};
             for (std::size_t k = 0; k < 3; ++k) {
                 placed.x[k] =
                     static_cast<std::int64_t>(std::floor((corner[k].x - left) * extent_.width * kSteps + 0.5));
@@ -152,11 +152,11 @@ CoverageMap::Box CoverageMap::box_of(const Placed& t, int margin, int strip) con
             clamp(texel(y0) - margin, top, bottom), clamp(texel(y1) + margin, top - 1, bottom - 1)};
 }
 
-std::int64_t CoverageMap::cover_inside(const Placed& t, int strip, std::vector<Covered>& texels) const {
+void CoverageMap::cover_inside(const Placed& t, int strip, std::vector<Covered>& texels, Overlaps& overlaps) const {
     TrianglePoint corner[3] = {{t.x[0], t.y[0]}, {t.x[1], t.y[1]}, {t.x[2], t.y[2]}};
     const std::int64_t area = twice_area(corner[0], corner[1], corner[2]);
     const Box box = box_of(t, 0, strip);
-    if (area == 0 || box.left > box.right || box.top > box.bottom) return 0;
+    if (area == 0 || box.left > box.right || box.top > box.bottom) return;
     const bool is_turned = area < 0;
     if (is_turned) std::swap(corner[1], corner[2]);
     const TrianglePoint start{box.left * kSteps + kSteps / 2, box.top * kSteps + kSteps / 2};
@@ -165,22 +165,20 @@ std::int64_t CoverageMap::cover_inside(const Placed& t, int strip, std::vector<C
                              {corner[2], corner[0], start, kSteps},
                              {corner[0], corner[1], start, kSteps}};
     const auto whole = static_cast<double>(is_turned ? -area : area);
-    std::int64_t overlaps = 0;
     for (int j = box.top; j <= box.bottom; ++j) {
         std::int64_t first = 0, last = box.right - box.left;
         for (const TriangleEdge& edge : edges) edge.clip(first, last);
         for (std::int64_t k = first; k <= last; ++k) {
             Covered& texel = texels[place_of(box.left + static_cast<int>(k), j, strip)];
             if (texel.inside) {
-                ++overlaps;
+                ++(t.is_moved && !texel.is_moved ? overlaps.moved : overlaps.same);
                 continue;
             }
             const auto weight = [&](int n) { return static_cast<double>(edges[n].at(k)) / whole; };
-            texel = {t.triangle, true, {weight(0), weight(is_turned ? 2 : 1), weight(is_turned ? 1 : 2)}};
+            texel = {t.triangle, true, t.is_moved, {weight(0), weight(is_turned ? 2 : 1), weight(is_turned ? 1 : 2)}};
         }
         for (TriangleEdge& edge : edges) edge.next_row();
     }
-    return overlaps;
 }
 
 void CoverageMap::cover_gutter(const Placed& t, int strip, std::vector<Covered>& texels,
@@ -204,20 +202,28 @@ void CoverageMap::cover_gutter(const Placed& t, int strip, std::vector<Covered>&
                 const Point &a = c[(k + 1) % 3], &b = c[(k + 2) % 3];
                 outside[k] = ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) / area;
             }
-            texels[place] = {t.triangle, false, limited(border.weights, outside)};
+            texels[place] = {t.triangle, false, t.is_moved, limited(border.weights, outside)};
         }
     }
 }
 
-std::int64_t CoverageMap::cover(int strip, std::vector<Covered>& texels) const {
+Overlaps CoverageMap::cover(int strip, std::vector<Covered>& texels) const {
     const auto rows = static_cast<std::size_t>(std::min(strip_rows_, extent_.height - strip * strip_rows_));
     texels.assign(rows * static_cast<std::size_t>(extent_.width), {});
     const std::vector<std::uint32_t>& here = by_strip_[static_cast<std::size_t>(strip)];
-    std::int64_t overlaps = 0;
-    for (const std::uint32_t k : here) overlaps += cover_inside(placed_[k], strip, texels);
+    Overlaps overlaps;
+    for (const bool is_moved : {false, true}) {
+        for (const std::uint32_t k : here) {
+            if (placed_[k].is_moved == is_moved) cover_inside(placed_[k], strip, texels, overlaps);
+        }
+    }
     if (gutter_ == 0) return overlaps;
     std::vector<double> nearest(texels.size(), std::numeric_limits<double>::infinity());
-    for (const std::uint32_t k : here) cover_gutter(placed_[k], strip, texels, nearest);
+    for (const bool is_moved : {false, true}) {
+        for (const std::uint32_t k : here) {
+            if (placed_[k].is_moved == is_moved) cover_gutter(placed_[k], strip, texels, nearest);
+        }
+    }
     return overlaps;
 }
 

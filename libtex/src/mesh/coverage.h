@@ -20,7 +20,19 @@ inline constexpr std::int32_t kNoTriangle = -1;
 struct Covered {
     std::int32_t triangle = kNoTriangle;
     bool inside = false;
+    bool is_moved = false;  // the triangle, by whole repeats
     std::array<double, 3> weights{};
+};
+
+// How often one more triangle covers a texel: of the same rank as the one that decides, or one from outside of 0 to 1
+// (mesh.h, "convert").
+struct Overlaps {
+    std::int64_t same = 0, moved = 0;
+
+    void add(const Overlaps& other) {
+        same += other.same;
+        moved += other.moved;
+    }
 };
 
 // The triangles of a part in texels, x to the right, y down, sorted by the strips of rows that they touch.
@@ -32,13 +44,14 @@ public:
 
     [[nodiscard]] int strip_rows() const { return strip_rows_; }
     [[nodiscard]] int strips() const { return (extent_.height + strip_rows_ - 1) / strip_rows_; }
-    // Fills the texels of a strip, row by row, and returns the number of texels that several triangles cover.
-    std::int64_t cover(int strip, std::vector<Covered>& texels) const;
+    // Fills the texels of a strip, row by row.
+    Overlaps cover(int strip, std::vector<Covered>& texels) const;
 
 private:
     struct Placed {
         std::int32_t triangle;
         std::array<std::int64_t, 3> x, y;  // in kSteps a texel, moved by whole repeats
+        bool is_moved = false;             // by one or more
     };
     struct Box {
         int left, right, top, bottom;  // texels, right and bottom included
@@ -48,7 +61,7 @@ private:
                static_cast<std::size_t>(i);
     }
     [[nodiscard]] Box box_of(const Placed& t, int margin, int strip) const;
-    std::int64_t cover_inside(const Placed& t, int strip, std::vector<Covered>& texels) const;
+    void cover_inside(const Placed& t, int strip, std::vector<Covered>& texels, Overlaps& overlaps) const;
     void cover_gutter(const Placed& t, int strip, std::vector<Covered>& texels, std::vector<double>& nearest) const;
     Result<void> place(const MeshPart& part, const std::vector<Float2>& uvs, std::int32_t triangle);
     Result<void> add(const Placed& placed, std::size_t triangles);

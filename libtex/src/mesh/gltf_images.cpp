@@ -113,12 +113,27 @@ Result<std::vector<ModelMap>> gltf_maps(JsonValue root) {
     return maps;
 }
 
-std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const std::vector<ModelMap>& maps) {
+std::vector<ModelTexture> gltf_textures(JsonValue root) {
+    std::vector<ModelTexture> textures;
+    const JsonValue materials = root["materials"];
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        const auto slots = slots_of(materials[m]);
+        if (!slots) continue;
+        for (const GltfSlot& slot : *slots) {
+            textures.push_back({static_cast<int>(m), slot.name, slot.extension, image_of_texture(root, slot.texture),
+                                slot.uv_set, slot.transform});
+        }
+    }
+    return textures;
+}
+
+std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const std::vector<ModelMap>& maps,
+                                    bool reads_all) {
     const JsonValue list = root["images"], materials = root["materials"];
     std::vector<ModelImage> images(list.size());
     for (std::size_t k = 0; k < images.size(); ++k) {
         const auto uses = [&](const ModelMap& map) { return map.image == static_cast<int>(k); };
-        const bool reads = std::any_of(maps.begin(), maps.end(), uses);
+        const bool reads = reads_all || std::any_of(maps.begin(), maps.end(), uses);
         if (const auto located = locate(list[k], buffers, reads, images[k]); !located)
             images[k].error = located.error();
         images[k].name = name_of_image(list[k], images[k], k);

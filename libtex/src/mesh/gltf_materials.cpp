@@ -86,9 +86,21 @@ void take_common_transform(const std::vector<GltfSlot>& slots, MeshMaterial& mat
     material.uv_transform = first.transform;
 }
 
+Result<void> take_alpha(JsonValue description, MeshMaterial& material) {
+    const std::string mode = description["alphaMode"].text().value_or("OPAQUE");
+    if (mode == "MASK") material.alpha_mode = AlphaMode::mask;
+    if (mode == "BLEND") material.alpha_mode = AlphaMode::blend;
+    const JsonValue factor = description["pbrMetallicRoughness"]["baseColorFactor"];
+    if (!take(description["alphaCutoff"], material.alpha_cutoff) ||
+        (factor.size() == 4 && !take(factor[3], material.alpha)))
+        return bad_gltf("its alpha is damaged");
+    return {};
+}
+
 Result<MeshMaterial> material_of(JsonValue root, JsonValue description) {
     MeshMaterial material;
     material.name = description["name"].text().value_or("");
+    if (auto taken = take_alpha(description, material); !taken) return taken.error();
     const auto slots = slots_of(description);
     if (!slots) return slots.error();
     const auto normal =

@@ -58,9 +58,9 @@ JsonNode* slot_node(JsonNode& material, const GltfSlot& slot) {
     return roughness == nullptr ? nullptr : roughness->member(slot.name);
 }
 
-JsonNode* add_slot(JsonNode& material, std::int64_t texture) {
-    material.set("normalTexture", "{\"index\":" + std::to_string(texture) + "}");
-    return material.member("normalTexture");
+JsonNode* add_slot(JsonNode& material, const std::string& name, std::int64_t texture) {
+    material.set(name, "{\"index\":" + std::to_string(texture) + "}");
+    return material.member(name);
 }
 
 void set_slot(JsonNode& root, JsonNode& node, const GltfSlot& slot, const ModelMap& map) {

@@ -19,8 +19,8 @@ namespace tex::inline v1 {
 // The slot in the text of its material, or null if that lacks it.
 JsonNode* slot_node(JsonNode& material, const GltfSlot& slot);
 
-// Gives a material a normal map with this texture.
-JsonNode* add_slot(JsonNode& material, std::int64_t texture);
+// Gives a material a slot of its own, such as normalTexture, with this texture.
+JsonNode* add_slot(JsonNode& material, const std::string& name, std::int64_t texture);
 
 // Gives the slot, which is described as `slot`, the scale, the set of UVs and the transform of the map.
 void set_slot(JsonNode& root, JsonNode& node, const GltfSlot& slot, const ModelMap& map);

@@ -15,6 +15,7 @@
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
 #include "mesh/gltf_materials.h"
+#include "mesh/gltf_picture_slots.h"
 #include "mesh/gltf_slots.h"
 #include "mesh/gltf_tangents.h"
 #include "mesh/gltf_views.h"
@@ -22,10 +23,6 @@
 
 namespace tex::inline v1 {
 namespace {
-
-constexpr int kNobody = -1, kUnused = -2;  // instead of the number of a picture
-
-Error bad_picture(std::string reason) { return {ErrorCode::bad_option, {}, std::move(reason)}; }
 
 std::string_view media_type_of(Container container) {
     if (container == Container::webp) return "image/webp";
@@ -60,12 +57,6 @@ public:
     [[nodiscard]] const std::vector<std::string>& outside() const { return names_.outside(); }
 
 private:
-    struct Slot {
-        std::size_t material = 0;
-        GltfSlot slot;
-        int picture = kNobody;
-        const ModelMap* map = nullptr;  // that gets the picture
-    };
     // Where a picture is from now on.
     struct Home {
         std::optional<std::int64_t> view;
@@ -74,8 +65,7 @@ private:
         std::vector<std::int64_t> images;
     };
 
-    Result<void> check_pictures();
-    Result<void> find_slots();
+    void set_map(JsonNode& node, const PictureSlot& slot);
     void find_owners();
     Result<void> house(std::size_t picture);
     Result<void> house_pictures();
@@ -86,7 +76,9 @@ private:
     void change_textures();
     Result<std::vector<std::byte>> load_buffer(std::size_t buffer) const;
     [[nodiscard]] JsonValue image(std::int64_t index) const { return root_["images"][static_cast<std::size_t>(index)]; }
-    [[nodiscard]] std::int64_t image_of(const Slot& slot) const { return image_of_texture(root_, slot.slot.texture); }
+    [[nodiscard]] std::int64_t image_of(const PictureSlot& slot) const {
+        return image_of_texture(root_, slot.slot.texture);
+    }
 
     JsonValue root_;
     JsonNode& text_;
@@ -98,7 +90,7 @@ private:
     GltfNames names_;
     GltfViews views_;
     GltfTangents tangents_;
-    std::vector<Slot> slots_;
+    std::vector<PictureSlot> slots_;
     std::vector<int> texture_owners_;
     std::vector<std::vector<std::int64_t>> own_;  // for each picture, the images that it replaces everywhere
     std::vector<Home> homes_;
@@ -107,66 +99,11 @@ private:
     std::vector<BesideModel> beside_;
 };
 
-Result<void> GltfWriter::check_pictures() {
-    for (const ModelPicture& picture : pictures_) {
-        if (picture.maps.empty()) return bad_picture("a picture is for no map");
-        if (picture.container != Container::png && picture.container != Container::jpeg &&
-            picture.container != Container::webp && picture.container != Container::ktx2)
-            return bad_picture("a picture of a model is PNG, JPEG, WebP or KTX2");
-        for (const ModelMap& map : picture.maps) {
-            if (map.image < 0 && (!picture.sets_slots || map.slot != NormalSlot::normal))
-                return bad_picture("the map of material " + std::to_string(map.material) + " has no image");
-        }
-    }
-    return {};
-}
-
-// Finds all slots, and which of them get a picture. Materials without the slot get it.
-Result<void> GltfWriter::find_slots() {
-    struct Want {
-        int picture;
-        const ModelMap* map;
-        bool is_found = false;
-    };
-    std::map<std::pair<int, NormalSlot>, Want> wanted;
-    for (std::size_t p = 0; p < pictures_.size(); ++p) {
-        for (const ModelMap& map : pictures_[p].maps) {
-            if (!wanted.emplace(std::pair(map.material, map.slot), Want{static_cast<int>(p), &map}).second)
-                return bad_picture("two pictures are for one map of material " + std::to_string(map.material));
-        }
-    }
-    const JsonValue materials = root_["materials"];
-    for (std::size_t m = 0; m < materials.size(); ++m) {
-        const auto slots = slots_of(materials[m]);
-        if (!slots) return bad_gltf("material " + std::to_string(m) + ": " + slots.error().reason);
-        for (const GltfSlot& found : *slots) {
-            slots_.push_back({m, found, kNobody});
-            const auto kind = normal_slot(found);
-            const auto want = kind ? wanted.find({static_cast<int>(m), *kind}) : wanted.end();
-            if (want == wanted.end() || image_of(slots_.back()) != want->second.map->image) continue;
-            slots_.back().picture = want->second.picture;
-            slots_.back().map = want->second.map;
-            want->second.is_found = true;
-        }
-        const auto none = wanted.find({static_cast<int>(m), NormalSlot::normal});
-        if (none == wanted.end() || none->second.is_found || none->second.map->image >= 0) continue;
-        GltfSlot added;
-        added.name = "normalTexture";
-        added.texture = -1;
-        slots_.push_back({m, added, none->second.picture, none->second.map});
-        none->second.is_found = true;
-    }
-    for (const auto& [map, want] : wanted) {
-        if (!want.is_found) return bad_picture("material " + std::to_string(map.first) + " has no such map");
-    }
-    return {};
-}
-
 // Finds out which textures and images belong to one picture in all of their uses.
 void GltfWriter::find_owners() {
     const JsonValue textures = root_["textures"];
     texture_owners_.assign(textures.size(), kUnused);
-    for (const Slot& slot : slots_) {
+    for (const PictureSlot& slot : slots_) {
         const auto texture = static_cast<std::size_t>(slot.slot.texture);
         if (texture < texture_owners_.size()) join(texture_owners_[texture], slot.picture);
     }
@@ -181,7 +118,7 @@ void GltfWriter::find_owners() {
         use(textures[t]["source"]);
         for (const std::string& name : textures[t]["extensions"].keys()) use(textures[t]["extensions"][name]["source"]);
     }
-    for (const Slot& slot : slots_) {
+    for (const PictureSlot& slot : slots_) {
         if (slot.picture == kNobody) continue;
         const std::int64_t index = image_of(slot);
         if (index < 0) continue;
@@ -205,7 +142,7 @@ Result<void> GltfWriter::house(std::size_t picture) {
     home.images = own_[picture];
     const std::vector<std::byte>& bytes = pictures_[picture].bytes;
     const auto slot = std::find_if(slots_.begin(), slots_.end(),
-                                   [&](const Slot& each) { return each.picture == static_cast<int>(picture); });
+                                   [&](const PictureSlot& each) { return each.picture == static_cast<int>(picture); });
     const std::int64_t like = home.images.empty() ? image_of(*slot) : home.images.front();
     const std::string uri = like < 0 ? "" : image(like)["uri"].text().value_or("");
     const bool takes_binary = !binary_.empty() && root_["buffers"][0]["uri"].is_null();  // and needs no further file
@@ -225,7 +162,8 @@ Result<void> GltfWriter::house(std::size_t picture) {
     } else if (home.images.empty() && takes_binary) {
         home.view = views_.add(0, bytes);
     } else if (like < 0) {
-        home.file = "normal_" + std::to_string(slot->material) + ".png";
+        const std::string what = slot->kind == SlotKind::normal ? "normal_" : "occlusion_";
+        home.file = what + std::to_string(slot->material) + ".png";
     } else {
         auto path = path_of_uri(uri);
         if (!path) return path.error();
@@ -299,7 +237,7 @@ void GltfWriter::name_picture(std::size_t picture) {
                                                                  : std::string(".png");
     const std::string name = names_.name_for(home.file, extension);
     home.uri = uri_of_path(name);
-    const bool is_new = home.images.empty() && std::none_of(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+    const bool is_new = home.images.empty() && std::none_of(slots_.begin(), slots_.end(), [&](const PictureSlot& slot) {
                             return slot.picture == static_cast<int>(picture) && image_of(slot) >= 0;
                         });
     beside_.push_back({name, is_new ? std::string() : home.file, true, pictures_[picture].bytes});
@@ -326,7 +264,7 @@ void GltfWriter::change_images(std::size_t picture) {
     }
     if (!home.images.empty()) return;
     const auto slot = std::find_if(slots_.begin(), slots_.end(),
-                                   [&](const Slot& each) { return each.picture == static_cast<int>(picture); });
+                                   [&](const PictureSlot& each) { return each.picture == static_cast<int>(picture); });
     const std::int64_t like = image_of(*slot);
     const auto name = like < 0 ? std::nullopt : image(like)["name"].text();
     std::string text = name ? "{\"name\":" + json_string(*name) + "," : "{";
@@ -339,7 +277,8 @@ void GltfWriter::change_images(std::size_t picture) {
 // Makes the textures of slots show their pictures. A texture that other slots use, too, is left to them.
 void GltfWriter::change_textures() {
     std::map<std::pair<int, std::int64_t>, std::int64_t> added;
-    for (const Slot& slot : slots_) {
+    std::map<int, std::int64_t> shown;  // a texture of each picture, for slots that had none
+    for (const PictureSlot& slot : slots_) {
         if (slot.picture == kNobody) continue;
         const std::int64_t texture = slot.slot.texture;
         const auto number = static_cast<std::size_t>(texture);
@@ -352,22 +291,40 @@ void GltfWriter::change_textures() {
         JsonNode* node = texture < 0 ? nullptr : slot_node(material, slot.slot);
         if (is_own) {
             show_image(text_, *text_.member("textures")->element(number), image, picture.container);
+            shown.emplace(slot.picture, texture);
+        } else if (const auto known = shown.find(slot.picture); texture < 0 && known != shown.end()) {
+            node = add_slot(material, slot.slot.name, known->second);
         } else {
             const auto [found, is_new] = added.emplace(std::pair(slot.picture, texture), 0);
             const auto sampler = texture < 0 ? std::nullopt : root_["textures"][number]["sampler"].count();
             if (is_new) found->second = add_texture(text_, sampler, image, picture.container);
+            shown.emplace(slot.picture, found->second);
             if (node == nullptr)
-                node = add_slot(material, found->second);
+                node = add_slot(material, slot.slot.name, found->second);
             else
                 node->set("index", std::to_string(found->second));
         }
-        if (picture.sets_slots) set_slot(text_, *node, slot.slot, *slot.map);
+        set_map(*node, slot);
     }
 }
 
+// Gives a slot what its map says, if that is wanted. Occlusion from 0 to 1 needs no strength.
+void GltfWriter::set_map(JsonNode& node, const PictureSlot& slot) {
+    if (slot.kind == SlotKind::roughness) return;
+    if (slot.kind != SlotKind::occlusion) {
+        if (pictures_[static_cast<std::size_t>(slot.picture)].sets_slots) set_slot(text_, node, slot.slot, *slot.map);
+        return;
+    }
+    ModelMap map = *slot.map;
+    map.scale = slot.slot.scale;
+    set_slot(text_, node, slot.slot, map);
+    node.remove("strength");
+}
+
 Result<void> GltfWriter::change() {
-    if (auto sound = check_pictures(); !sound) return sound;
-    if (auto found = find_slots(); !found) return found;
+    auto slots = picture_slots(root_, pictures_);
+    if (!slots) return slots.error();
+    slots_ = std::move(*slots);
     find_owners();
     if (auto housed = house_pictures(); !housed) return housed;
     if (auto changed = tangents_.change(changes_.tangents); !changed) return changed;

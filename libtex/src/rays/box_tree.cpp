@@ -281,6 +281,11 @@ void BoxTree::set_bounds(const FloatBox& all) {
     scale_ = std::ldexp(1.0, -exponent);
 }
 
+double BoxTree::largest_coordinate() const {
+    return std::max({std::abs(low_.x), std::abs(low_.y), std::abs(low_.z), std::abs(high_.x), std::abs(high_.y),
+                     std::abs(high_.z)});
+}
+
 Result<BoxTree> BoxTree::build(const Triangles& triangles, const Execution& execution, ProgressSpan span) {
     return no_throw([&]() -> Result<BoxTree> {
         BoxTree tree;

@@ -66,6 +66,12 @@ CornerFrames frames_at(const Triangles::Triangle& triangle, const HighDetail& de
 }
 
 Result<void> check_detail(const HighDetail& detail, const MeshPart& part) {
+    if (detail.alpha != nullptr) {
+        if (detail.alpha->empty()) return bad_option("has alpha without texels");
+        if (!std::isfinite(detail.alpha_cutoff)) return bad_option("alpha_cutoff must be finite");
+        if (detail.alpha_uv_set < 0 || static_cast<std::size_t>(detail.alpha_uv_set) >= part.uvs.size())
+            return bad_option("has no such set of UVs");
+    }
     if (detail.normals == nullptr && detail.color == nullptr) return {};
     if (detail.color != nullptr) {
         if (auto usable = check_usable(*detail.color); !usable) return usable;
@@ -84,6 +90,15 @@ HighSurface::HighSurface(const std::vector<MeshPart>& high, const TransferInputs
     : high_(high), inputs_(inputs) {
     const auto has_color = [](const HighDetail& detail) { return detail.color != nullptr; };
     has_colors_ = std::any_of(inputs.high_details.begin(), inputs.high_details.end(), has_color);
+    const auto has_alpha = [](const HighDetail& detail) { return detail.alpha != nullptr; };
+    has_cutouts_ = std::any_of(inputs.high_details.begin(), inputs.high_details.end(), has_alpha);
+}
+
+bool HighSurface::is_open_at(const Triangles::Triangle& triangle, const Weights& weights) const {
+    const HighDetail* const detail = detail_of(triangle);
+    if (detail == nullptr || detail->alpha == nullptr) return false;
+    const Sampled at = sampled(triangle, weights, detail->alpha_uv_set, detail->alpha->extent());
+    return at.of(*detail->alpha) < static_cast<double>(detail->alpha_cutoff);
 }
 
 Vector3 HighSurface::face_normal(const Triangles::Triangle& triangle) {

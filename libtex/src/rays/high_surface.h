@@ -29,6 +29,10 @@ public:
     }
     [[nodiscard]] static Vector3 face_normal(const Triangles::Triangle& triangle);
 
+    [[nodiscard]] bool has_cutouts() const { return has_cutouts_; }
+    // Whether nothing is there: HighDetail::alpha.
+    [[nodiscard]] bool is_open_at(const Triangles::Triangle& triangle, const Weights& weights) const;
+
     [[nodiscard]] bool has_colors() const { return has_colors_; }
     [[nodiscard]] Vector3 color_at(const Triangles::Triangle& triangle, const Weights& weights) const;
 
@@ -50,7 +54,7 @@ private:
 
     const std::vector<MeshPart>& high_;
     const TransferInputs& inputs_;
-    bool has_colors_ = false;
+    bool has_colors_ = false, has_cutouts_ = false;
 };
 
 // Errors: bad_option, if ids and details do not fit the parts (mesh.h).

@@ -30,7 +30,7 @@ RayEnd nearer(const RayHit& out, const RayHit& in) {
 
 void RayCaster::trace(Scratch& scratch) const {
     scratch.hits.assign(scratch.rays.size(), {});
-    trace_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
+    cutouts_.trace(scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
 }
 
 // A triangle that the ray outwards meets is seen from outside if it turns its back to that ray. Rays that look the same
@@ -94,7 +94,7 @@ RayEnd RayCaster::cast_line(const RayStart& start, RayWork& work) const {
     const Ray rays[2] = {ray_from(start.point, start.direction, length, Facing::back),
                          ray_from(start.point, -1.0 * start.direction, length, Facing::front)};
     RayHit hits[2];
-    trace_fairly(tree_.view(), rays, 2, hits, work);
+    cutouts_.trace(rays, 2, hits, work);
     return nearer(hits[0], hits[1]);
 }
 

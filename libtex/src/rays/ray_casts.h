@@ -11,6 +11,7 @@
 #include <tex/mesh.h>
 
 #include "rays/box_tree.h"
+#include "rays/cutouts.h"
 #include "rays/ray_work.h"
 
 namespace tex::inline v1 {
@@ -32,9 +33,11 @@ struct RayEnd {
 
 class RayCaster {
 public:
-    // Distances in the unit of the meshes. `triangles` and `tree` must outlive this.
-    RayCaster(const Triangles& triangles, const BoxTree& tree, HitChoice choice, bool backfaces, double back)
-        : triangles_(triangles), tree_(tree), choice_(choice), backfaces_(backfaces), back_(back) {}
+    // Distances in the unit of the meshes. `triangles`, `tree` and `surface` must outlive this.
+    RayCaster(const Triangles& triangles, const BoxTree& tree, const HighSurface& surface, HitChoice choice,
+              bool backfaces, double back)
+        : triangles_(triangles), tree_(tree), cutouts_(triangles, tree, surface), choice_(choice),
+          backfaces_(backfaces), back_(back) {}
 
     // Memory that casts use one after the other.
     struct Scratch {
@@ -65,6 +68,7 @@ private:
 
     const Triangles& triangles_;
     const BoxTree& tree_;
+    Cutouts cutouts_;
     HitChoice choice_;
     bool backfaces_;
     double back_;

@@ -90,9 +90,10 @@ Result<RayGroups> RayGroups::make(const MeshPart& low, const std::vector<MeshPar
         made.of_low_.push_back(has_group ? static_cast<int>(found - numbers.begin()) : kNone);
     }
     if (whole && made.groups_.front().triangles.count() != count) {
-        auto tree = build(made.triangles_of(high, {}, 0), quiet, {});
+        Triangles triangles = made.triangles_of(high, {}, 0);
+        auto tree = build(triangles, quiet, {});
         if (!tree) return tree.error();
-        made.whole_ = std::move(*tree);
+        made.whole_.emplace(RayGroup{kNone, std::move(triangles), std::move(*tree)});
     }
     return made;
 }

@@ -37,7 +37,7 @@ public:
     // Whether every triangle is of group 0.
     [[nodiscard]] bool has_all() const { return of_low_.empty(); }
     // Precondition: make() was asked for it, or there is one group.
-    [[nodiscard]] const BoxTree& whole() const { return whole_ ? *whole_ : groups_.front().tree; }
+    [[nodiscard]] const RayGroup& whole() const { return whole_ ? *whole_ : groups_.front(); }
 
 private:
     Result<void> place(const std::vector<MeshPart>& high, const TransferInputs& inputs);
@@ -48,7 +48,7 @@ private:
     std::vector<StandingPart> places_;  // if parts have any, which refer to `placements_`
     std::vector<RayGroup> groups_;
     std::vector<int> of_low_;  // empty: all are of group 0
-    std::optional<BoxTree> whole_;
+    std::optional<RayGroup> whole_;
 };
 
 }  // namespace tex::inline v1

@@ -14,19 +14,15 @@ constexpr double kLift = 0x1p-32;
 // Makes the directions of thickness others than those of occlusion.
 constexpr std::uint32_t kInwards = 0x68bc21ebU;
 
-double largest_coordinate(const BoxTree& tree) {
-    const Vector3 a = tree.low(), b = tree.high();
-    return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z), std::abs(b.x), std::abs(b.y), std::abs(b.z)});
-}
-
 }  // namespace
 
-SecondRays::SecondRays(const BoxTree& tree, const TransferOptions& options, double distance)
-    : tree_(tree), hemisphere_(options.rays_per_hit), looks_out_(options.occlusion || options.bent),
-      looks_in_(options.thickness), limit_(distance) {
-    const Vector3 across = tree.high() - tree.low();
+SecondRays::SecondRays(const RayGroup& whole, const HighSurface& surface, const TransferOptions& options,
+                       double distance)
+    : cutouts_(whole.triangles, whole.tree, surface), hemisphere_(options.rays_per_hit),
+      looks_out_(options.occlusion || options.bent), looks_in_(options.thickness), limit_(distance) {
+    const Vector3 across = whole.tree.high() - whole.tree.low();
     length_ = std::min(limit_, 2.0 * std::sqrt(dot(across, across)));  // nothing is farther away
-    lift_ = kLift * largest_coordinate(tree);
+    lift_ = kLift * whole.tree.largest_coordinate();
 }
 
 void SecondRays::start(const HitPoint& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const {
@@ -44,7 +40,7 @@ void SecondRays::start(const HitPoint& place, double side, std::uint32_t seed, F
 void SecondRays::add_openness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, 1.0, seed, Facing::both, scratch);
     scratch.blocked.resize(scratch.rays.size());
-    find_blocked_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.blocked.data(), scratch.work);
+    cutouts_.find_blocked(scratch.rays.data(), scratch.rays.size(), scratch.blocked.data(), scratch.work);
     int open = 0;
     Vector3 bent;
     for (std::size_t k = 0; k < scratch.rays.size(); ++k) {
@@ -60,7 +56,7 @@ void SecondRays::add_openness(const HitPoint& place, std::uint32_t seed, Scratch
 void SecondRays::add_thickness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const {
     start(place, -1.0, seed ^ kInwards, Facing::both, scratch);
     scratch.hits.assign(scratch.rays.size(), {});
-    trace_fairly(tree_.view(), scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
+    cutouts_.trace(scratch.rays.data(), scratch.rays.size(), scratch.hits.data(), scratch.work);
     double sum = 0.0;
     int count = 0;
     for (const RayHit& hit : scratch.hits) {

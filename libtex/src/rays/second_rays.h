@@ -8,8 +8,10 @@
 
 #include <tex/mesh.h>
 
-#include "rays/box_tree.h"
+#include "rays/cutouts.h"
 #include "rays/hemisphere.h"
+#include "rays/high_surface.h"
+#include "rays/ray_groups.h"
 #include "rays/ray_work.h"
 
 namespace tex::inline v1 {
@@ -22,8 +24,8 @@ struct HitPoint {
 
 class SecondRays {
 public:
-    // `distance` is how far they reach; infinite if there is no limit. The tree must outlive this.
-    SecondRays(const BoxTree& tree, const TransferOptions& options, double distance);
+    // `distance` is how far they reach; infinite if there is no limit. Both must outlive this.
+    SecondRays(const RayGroup& whole, const HighSurface& surface, const TransferOptions& options, double distance);
 
     // What a texel has found at the places that its rays have hit.
     struct Sums {
@@ -49,7 +51,7 @@ private:
     void add_openness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
     void add_thickness(const HitPoint& place, std::uint32_t seed, Scratch& scratch, Sums& sums) const;
 
-    const BoxTree& tree_;
+    Cutouts cutouts_;
     Hemisphere hemisphere_;
     bool looks_out_, looks_in_;
     double limit_;   // infinite: none

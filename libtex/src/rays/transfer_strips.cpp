@@ -25,7 +25,7 @@ const LowTriangle& TransferStrips::triangle_of(Strip& strip, std::int32_t number
 void TransferStrips::run(int strip) {
     if (costly_.is_before(strip)) return;
     std::unique_ptr<Strip> work = take_strip();
-    const std::int64_t overlaps = scene_.coverage.cover(strip, work->covered);
+    const Overlaps overlaps = scene_.coverage.cover(strip, work->covered);
     const Extent extent = result_.map.extent();
     const int rows = scene_.coverage.strip_rows() / n_, first = strip * rows;
     const int width = std::max(1, static_cast<int>(kRaysAtOnce) / (n_ * n_));
@@ -46,10 +46,11 @@ std::unique_ptr<TransferStrips::Strip> TransferStrips::take_strip() {
     return strip;
 }
 
-void TransferStrips::add(std::unique_ptr<Strip> strip, std::int64_t overlaps) {
+void TransferStrips::add(std::unique_ptr<Strip> strip, const Overlaps& overlaps) {
     const Found& found = *strip;
     const std::lock_guard lock(mutex_);
-    result_.overlaps += overlaps;
+    result_.overlaps += overlaps.same;
+    result_.moved += overlaps.moved;
     result_.covered += found.covered_texels;
     result_.missed += found.missed;
     result_.backward += found.backward;

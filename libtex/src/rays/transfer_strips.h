@@ -154,7 +154,7 @@ private:
     void add_texel(Strip& strip, int i, std::size_t begin, std::size_t end, const Hits& hits) const;
     void encode_texels(Strip& strip, int j) const;
     [[nodiscard]] std::unique_ptr<Strip> take_strip();
-    void add(std::unique_ptr<Strip> strip, std::int64_t overlaps);
+    void add(std::unique_ptr<Strip> strip, const Overlaps& overlaps);
 
     const TransferScene& scene_;
     const int n_;
