@@ -122,6 +122,12 @@ TEST_F(ConvertedModels, CheckNormalsPrintsTheCommand) {
     write_model_of("turned.glb", "", 1.2f);
     const std::string bare = go("check-normals bare.glb --quiet").out;
     EXPECT_NE(bare.find("fix: convert-normals bare.glb --tangents mikktspace -o FIXED.glb"), std::string::npos) << bare;
+    const std::string asked = go("check-normals bare.glb --quiet --for cesium").out;
+    EXPECT_NE(asked.find("N808"), std::string::npos) << asked;
+    EXPECT_NE(asked.find("fix: convert-normals bare.glb --tangents mikktspace -o FIXED.glb"), std::string::npos)
+        << asked;
+    does("convert-normals bare.glb --tangents mikktspace -o seen.glb");
+    EXPECT_EQ(go("check-normals seen.glb --quiet --for cesium,filament").out.find("N808"), std::string::npos);
     const std::string turned = go("check-normals turned.glb --quiet").out;
     EXPECT_NE(turned.find("N705"), std::string::npos) << turned;
     const std::string command = "convert-normals turned.glb --material A --tangents mikktspace -o FIXED.glb";

@@ -325,16 +325,15 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     return text;
 }
 
-}  // namespace
-
-namespace {
-
 // The command that gives the parts of a model the tangents of MikkTSpace; none for other findings.
 std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report) {
     const std::string_view id = finding.rule->id;
     const std::string type = report.map.empty() ? "" : type_of_model(report);
-    if (type.empty() || !is_any_of(id, {"N701", "N702", "N703", "N704", "N705", "N706"})) return std::nullopt;
-    const std::string material = id == "N701" ? "" : " --material " + shell_word(report.material);
+    // Of what engines draw wrongly (N808), tangents mend what comes from their absence.
+    const bool lacks_tangents = id == "N808" && finding.message.find("no TANGENT") != std::string::npos;
+    if (type.empty() || !(lacks_tangents || is_any_of(id, {"N701", "N702", "N703", "N704", "N705", "N706"})))
+        return std::nullopt;
+    const std::string material = id == "N701" || id == "N808" ? "" : " --material " + shell_word(report.material);
     Fix fix{
         fmt::format("convert-normals {}{} --tangents mikktspace -o FIXED{}", shell_file(report.file), material, type),
         true};
