@@ -67,7 +67,7 @@ done
 
 # -- one word, one stem, everywhere ---------------------------------------------------------------------------
 # A word has a section in a header, a source and a unit test. Sections of values alone have no source.
-value_sections=' angular_error borders execution mip_chain names normal_map result texture '
+value_sections=' angular_error borders execution materials mip_chain names normal_map result texture '
 sections=$(sed -nE 's|^// -- ([a-z ]+[a-z]) -+$|\1|p' libtex/include/tex/*.h | tr ' ' _)
 for name in $sections; do
     case $value_sections in *" $name "*) continue ;; esac

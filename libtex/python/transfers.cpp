@@ -177,9 +177,9 @@ private:
             } else if (name == "alpha_uv_set") {
                 detail.alpha_uv_set = Convert<int>::from(value, name);
             } else {
-                raise_value("high_details",
-                            shown_text(name) + " must be one of 'normals', 'tangents', 'decoder', 'color', 'uv_set', "
-                                               "'alpha', 'alpha_cutoff', 'alpha_uv_set'");
+                raise_value("high_details", shown_text(name) +
+                                                " must be one of 'normals', 'tangents', 'decoder', 'color', 'uv_set', "
+                                                "'alpha', 'alpha_cutoff', 'alpha_uv_set'");
             }
         }
     }

@@ -26,7 +26,8 @@ for model in "$@"; do
             [ "$extent" = own ] || options=(--extent "$extent")
             "$build/transfer-normals" "$low" "$model" -o "$lod" "${options[@]}" --quiet >/dev/null
             "$build/lod_bench" "$model" "$low" "$lod" | cut -f 2,3 | tr '\n' '\t' |
-                awk -v row="$stem\t$ratio\t$extent" '{ printf "%s\t%s\t%s\t%s\t%s\t%.2f\n", row, $1, $2, $3, $4, $3 / $1 }'
+                awk -v row="$stem\t$ratio\t$extent" \
+                    '{ printf "%s\t%s\t%s\t%s\t%s\t%.2f\n", row, $1, $2, $3, $4, $3 / $1 }'
         done
     done
 done

@@ -134,7 +134,7 @@ TEST_F(ConvertedModels, CheckNormalsPrintsTheCommand) {
     EXPECT_NE(turned.find("fix: " + command), std::string::npos) << turned;
     does(command + "; convert-normals FIXED.glb --material B --tangents mikktspace -o both.glb");
     const std::string fixed = go("check-normals both.glb --quiet").out;
-    EXPECT_NE(fixed.find("both.glb: A"), std::string::npos) << fixed;
+    EXPECT_NE(fixed.find("0 errors, 0 warnings"), std::string::npos) << fixed;
     for (const char* const id : {"N701", "N705", "N706"}) EXPECT_EQ(fixed.find(id), std::string::npos) << fixed;
 }
 

@@ -2,7 +2,6 @@
 
 #include "batch/model_plan.h"
 
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <tuple>
@@ -13,7 +12,6 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
-#include "files/path_names.h"
 #include "tasks/collisions.h"
 #include "tasks/depfile.h"
 #include "tasks/model_output.h"
@@ -86,7 +84,7 @@ void leave_out_shared(std::vector<Task>& tasks, const std::vector<std::vector<Mo
 Task complete_model(Task task, const FileOptions& files, const OutputOptions& output, const OutputRules& rules,
                     const Command& command, const MeshReadOptions& options) {
     const OutputOptions own = picture_options(files, output, rules, command);
-    if (lower_case(slashed(std::filesystem::path(task.output).extension())) != ".glb")
+    if (!lower_case(task.output).ends_with(".glb"))
         throw UsageError(fmt::format("{}: a rule writes models as .glb", printable(task.output)));
     fill(task, own, rules, options);
     if (task.more_outputs.empty()) return task;

@@ -32,8 +32,8 @@ Result<std::vector<ModelMap>> gltf_maps(JsonValue root);
 // All slots of the materials, which gltf_maps() has found to be sound.
 std::vector<ModelTexture> gltf_textures(JsonValue root);
 
-// All images, with their uses, and the bytes of those that `maps` use, or of all if `reads_all` is set. `ModelImage::file` is relative to the file. What
-// is wrong with an image is its own error.
+// All images, with their uses, and the bytes of those that `maps` use, or of all if `reads_all` is set.
+// `ModelImage::file` is relative to the file. What is wrong with an image is its own error.
 std::vector<ModelImage> gltf_images(JsonValue root, GltfBuffers& buffers, const std::vector<ModelMap>& maps,
                                     bool reads_all);
 

@@ -60,7 +60,7 @@ public:
     // Between the corners of the box that holds all triangles, in the unit of the meshes.
     [[nodiscard]] Vector3 low() const { return low_; }
     [[nodiscard]] Vector3 high() const { return high_; }
-    // Of all corners, whatever its sign.
+    // The largest one of all corners, without its sign.
     [[nodiscard]] double largest_coordinate() const;
 
 private:
