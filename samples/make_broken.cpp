@@ -280,6 +280,11 @@ void Maker::damages() {
         for (int c = 0; c < 3; ++c) enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);
     }
     png("N312-scaled-up", enlarged);
+    Codes darkened = whole_codes;
+    for (int k = 0; k < 128 * 128; ++k) {
+        for (int c = 0; c < 3; ++c) darkened.at(k % 128, k / 128, c) = whole_codes.at(k % 128, k / 128, c) * 3 / 5;
+    }
+    png("N313-darkened", darkened);
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     const Codes whole = codes();
     Codes blocks = whole;  // four colours in each block of 4x4: those of its first row

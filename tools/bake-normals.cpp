@@ -163,6 +163,13 @@ Result<void> BakeNormals::process(cli::Job& job) {
             fmt::format("{}: --bumpiness {}, as the file states\n", cli::printable(job.task.input), baked->strength.x));
     warn_of_steep(job, baked->steep_texels, baked->extent, with.pack.encoding);
     warn_of_flat(job, *baked);
+    const HeightChannel channel = with.heights.channel;
+    const bool is_metres = channel == HeightChannel::terrain_rgb || channel == HeightChannel::terrarium;
+    if (is_metres && !baked->is_stated && !reader_.strength.is_given && !reader_.strength.measured) {
+        job.warn(
+            "heights are metres, and nothing says how wide a texel is: 1 m is assumed; --world-size, the width of the "
+            "map in metres, gives true slopes");
+    }
     warn_of_border(job, baked->border_ratio);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};

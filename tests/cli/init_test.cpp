@@ -114,7 +114,7 @@ TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     ASSERT_EQ(ran.code, 0) << ran.err;
     const std::string manifest = scratch_.read("normals.toml");
     SCOPED_TRACE(manifest);
-    EXPECT_NE(manifest.find("match = \"**/*_nrm.tga\"\nsteps = [ { mip = { y-in = \"down\" } } ]"), std::string::npos);
+    EXPECT_NE(manifest.find("match = \"**/*_nrm.tga\"\nsteps = [ { pack = { y-in = \"down\" } } ]"), std::string::npos);
     EXPECT_NE(manifest.find("\"**/*_n.png\""), std::string::npos);
     EXPECT_NE(manifest.find("y-in = \"down\", swizzle = \"rg\", drop = true"), std::string::npos) << "LabPBR";
     EXPECT_NE(manifest.find("#     art/wall_h.png\n"), std::string::npos) << "there is a normal map beside it";
@@ -124,6 +124,16 @@ TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     for (const char* name : {"art/wall_n", "art/deep/floor_n", "bought/brick_nrm", "art/pbr/wall_l", "art/dune_h"})
         EXPECT_TRUE(scratch_.has(std::string("build/textures/") + name + ".dds")) << name;
     EXPECT_EQ(shell(scratch_, "check-normals --baseline normals-baseline.json bought/*.tga art/wall_n.png").code, 0);
+    // What the comment in the manifest says of engines.
+    const std::string outputs = "{ format = \"bc5\", y = \"up\", mips = \"all\" }";
+    ASSERT_NE(manifest.find(outputs), std::string::npos);
+    std::string engine = manifest;
+    scratch_.write("unity.toml", engine.replace(engine.find(outputs), outputs.size(), "{ for = \"unity\" }"));
+    const Ran for_unity = shell(scratch_, "build-normals unity.toml --no-sync");
+    EXPECT_EQ(for_unity.code, 0) << for_unity.err;
+    EXPECT_TRUE(scratch_.has("build/textures/art/wall_n.png"));
+    std::filesystem::remove_all(scratch_.path("build"));
+    EXPECT_EQ(shell(scratch_, "build-normals --no-sync --quiet").code, 0);
     // The commands that it prints: the whole tree passes, with its colours and heights and with what was built.
     EXPECT_NE(ran.out.find("next: build-normals --dry-run shows"), std::string::npos) << ran.out;
     EXPECT_EQ(shell(scratch_, "build-normals --dry-run").code, 0);

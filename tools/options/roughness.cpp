@@ -219,6 +219,10 @@ std::optional<Format> RoughnessOptions::format_in(Container container, const Tas
 }
 
 void RoughnessOptions::check_format(const Task& task, const std::string& path, Container container) const {
+    if (use_of(task) == RoughnessUse::smoothness && !into_.file.empty() && into_.channel != HeightChannel::a) {
+        throw UsageError("--roughness-into",
+                         fmt::format("{} reads smoothness from alpha: {}:a", task.engine->name, printable(into_.file)));
+    }
     const std::optional<Format> format = format_in(container, task);
     if (!format) return;
     const auto name = name_of(kRoughnessFormatNames, *format);

@@ -73,7 +73,7 @@ void RepairTotals::add(const Repaired& of) {
 }
 
 std::string RepairTotals::text(bool is_dry_run) const {
-    std::string text = fmt::format("{} {}: {} {}repaired, {} without a fault that is repaired", maps,
+    std::string text = fmt::format("{} {}: {} {}repaired, {} unchanged, without a fault that it repairs", maps,
                                    maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "", whole);
     if (refused > 0)
         text += fmt::format(", {} {}not written, because an error is left", refused, is_dry_run ? "would be " : "");

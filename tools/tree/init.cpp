@@ -55,15 +55,15 @@ bool has_error(const CheckReport& report) {
 }
 
 // What a rule's only step says about normals, as TOML.
-std::string mip_step(std::optional<YAxis> y, const CheckReport& report, const std::string& layout) {
+std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const std::string& layout) {
     std::vector<std::string> settings;
     if (y) settings.push_back(fmt::format("y-in = \"{}\"", name_of(kYAxisNames, *y)));
     if (!layout.empty()) settings.push_back(fmt::format("swizzle = \"{}\"", layout));
     if (report.more_data) settings.emplace_back("drop = true");
-    if (settings.empty()) return "{ mip = {} }";
+    if (settings.empty()) return "{ pack = {} }";
     std::string text;
     for (const std::string& setting : settings) text += (text.empty() ? "" : ", ") + setting;
-    return fmt::format("{{ mip = {{ {} }} }}", text);
+    return fmt::format("{{ pack = {{ {} }} }}", text);
 }
 
 constexpr const char* kBakeStep = "{ bake = { bumpiness = \"auto\" } }";
@@ -184,9 +184,9 @@ private:
             const std::string layout =
                 report.swizzle == kSwizzleXy && format_info(report.format).channels > 2 ? guess : "";
             if (report.y.y) {
-                file.settings = mip_step(report.y.y, report, layout);
+                file.settings = pack_step(report.y.y, report, layout);
             } else {
-                for (const YAxis y : {YAxis::up, YAxis::down}) file.also.push_back(mip_step(y, report, layout));
+                for (const YAxis y : {YAxis::up, YAxis::down}) file.also.push_back(pack_step(y, report, layout));
             }
             return;
         } else if (report.kind == PictureKind::object_space) {
@@ -226,8 +226,9 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "[defaults]\n"
         "out-dir = \"build/textures\"\n"
         "name = \"{dir}/{stem}\"\n"
-        "# For an engine, write its name instead, as in { for = \"unity\" }: normal-maps-engines(7).\n"
-        "outputs = [ { format = \"bc5\", y = \"up\" } ]\n";
+        "# For an engine, write its name instead of all that stands in braces, as in { for = \"unity\" }:\n"
+        "# normal-maps-engines(7).\n"
+        "outputs = [ { format = \"bc5\", y = \"up\", mips = \"all\" } ]\n";
     for (const InferredRule& rule : rules) {
         const bool bakes = rule.settings == kBakeStep;
         text +=

@@ -30,6 +30,10 @@ constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
 constexpr double kJpegLead = 1.05;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
+constexpr double kDarkestSoundCentre = 0.47;  // of x and y
+constexpr double kLeastCentre = 0.1;          // below, too little is left to tell
+constexpr double kEqualCentres = 0.03;
+constexpr double kUnitAfterDivision = 0.05;  // the mean error of the lengths
 constexpr int kLeastTurnedSide = 64;          // smaller maps, as pixel art, seem exchanged by chance
 constexpr int kLatticeTeeth = 6;
 constexpr double kLatticeUneven = 0.25;
@@ -96,8 +100,29 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
 }
 
+// All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then x and y
+// centre on the same value below 0.5, and dividing by it makes the vectors unit vectors. The curve of sRGB, which moves
+// the centre down as well, leaves 1 where it is. Returns whether it was found.
+bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
+    const double middle = (centre.x + centre.y) / 2.0;
+    if (!context.stored.has_z() || middle > kDarkestSoundCentre || middle < kLeastCentre) return false;
+    if (std::abs(centre.x - centre.y) > kEqualCentres) return false;
+    const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
+    const double decoded =
+        length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
+    const double divided = length_error(context.stored, [&](double c, int, int) { return c * 0.5 / middle; });
+    if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
+    Finding& finding = findings.add("N313", "x and y centre on " + decimal(255.0 * middle, 0) +
+                                                " of 255 instead of 128: all channels are multiplied by about " +
+                                                decimal(2.0 * middle, 2));
+    finding.figure = 2.0 * middle;
+    finding.unit = "ratio";
+    finding.confidence = 0.99;
+    return true;
+}
+
 void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
-    if (context.stored.is_signed) return;
+    if (context.stored.is_signed || check_darkened(context, centre, findings)) return;
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
     if (!dark && !light) return;

@@ -111,7 +111,7 @@ constexpr Rule kTextureRules[] = {
      "N115 N201 N202 N205 N207 N213 N214 N215 N220"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
      "R, G and B are equal everywhere: this is a height or bump map, not a normal map.",
-     "bake-normals FILE --bumpiness TEXELS --format SAME -o FIXED",
+     "bake-normals FILE --bumpiness auto --format SAME -o FIXED",
      "N115 N201 N202 N203 N205 N206 N207 N208 N209 N213 N214 N215 N301 N302 N303 N304 N305 N306 N308 N309 N310 N401 "
      "N402 N403 N404 N501 N502 N503 N504 N219"},
     {"N211", "dxt5nm-red", values, note, true, "R is not 255 in the layout of DXT5nm.",
@@ -245,6 +245,11 @@ constexpr Rule kTextureRules[] = {
     {"N312", "scaled-up", damage, note, true, "The map was enlarged.",
      "Its texels repeat, or lie on lines between those of a smaller map: it holds the details of that one alone.",
      "Bake the map at this size, or use the smaller one. Pixel art is meant to be so.", ""},
+    {"N313", "darkened", damage, error, true, "All channels were multiplied by the same number.",
+     "An opacity below 1 that was flattened on black does this, and programs that darken a picture. All vectors "
+     "then lean to the lower left. A bit is lost where half is left.",
+     "Export the map again at full opacity, without a change of brightness.",
+     "N201 N202 N205 N207 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green or red points the other way than required.",
