@@ -97,7 +97,7 @@ std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Exte
                       value(bin % kGridBins)};
 }
 
-// Marks the texels that have the value with 1. True if most of them lie together: single ones are damage.
+// Marks the texels that have the value. True if most of them lie together: single ones are damage.
 bool mark_value(const StoredVectors& map, Extent extent, Background& background) {
     std::int64_t together = 0;
     const auto near = [](float a, float b) { return std::abs(a - b) <= kSame; };
@@ -109,7 +109,7 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
             if (mask[i] != 0) continue;
             const StoredVector v = map.at(i, j);
             if (!near(v.x, value[0]) || !near(v.y, value[1]) || !near(v.z, value[2])) continue;
-            mask[i] = 1;
+            mask[i] = Background::kValue;
             if (background.texels++ == 0) background.column = i, background.row = j;
             together += (i == 0 || mask[i - 1] != 0) && (j == 0 || mask[i - extent.width] != 0) ? 1 : 0;
         }
@@ -118,7 +118,7 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
            static_cast<double>(together) >= kTogether * static_cast<double>(background.texels);
 }
 
-// Marks with 2 what a filter or a block codec mixed with it.
+// Marks what a filter or a block codec mixed with it.
 Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, const Execution& execution,
                            Background& background) {
     const auto at = [&](int i, int j) -> std::uint8_t& {
@@ -136,7 +136,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     const auto is_near = [&](int i, int j, int within) {
         for (int y = std::max(0, j - within); y <= std::min(extent.height - 1, j + within); ++y) {
             for (int x = std::max(0, i - within); x <= std::min(extent.width - 1, i + within); ++x) {
-                if (at(x, y) == 1) return true;
+                if (at(x, y) == Background::kValue) return true;
             }
         }
         return false;
@@ -156,7 +156,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     if (auto done = parallel_for(silent, extent.height, kRowsPerPiece, find); !done) return done;
     background.masked = background.texels + background.transparent;
     for (int j = 0; j < extent.height; ++j) {
-        for (const int i : mixed[static_cast<std::size_t>(j)]) at(i, j) = 2;
+        for (const int i : mixed[static_cast<std::size_t>(j)]) at(i, j) = Background::kMixed;
         background.masked += static_cast<std::int64_t>(mixed[static_cast<std::size_t>(j)].size());
     }
     return {};
