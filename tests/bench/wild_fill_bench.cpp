@@ -5,7 +5,7 @@
 //
 // Into the middle of each map a sheet of round and straight charts is cut, at most 512 x 512 texels. "Background" fills
 // the rest with one colour, with edges as a filter makes them: there the fix is right. "Bevels" gives the charts an
-// edge of three texels that leans outwards, 1.2 times as long as unit vectors; "strips" has no background at all, but
+// edge of two texels that leans outwards, 1.2 times as long as unit vectors; "strips" has no background at all, but
 // bevels of four directions that are so long that no unit vector is near: there the fix would delete them. Each is
 // stored as RGB, after JPEG of quality 75, as DXT5nm and as BC5. The table says of how many maps with N215 the fix is
 // not printed, separately for the half that sets thresholds (the FNV-1a hash of the name is even).
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
         return [=](const Codes& codes) {
             return painted(codes, [&](const Edge& edge) -> std::optional<Color> {
                 if (edge.inside < 0.0) return color;
-                if (bevels && edge.inside < 3.0) return leaning(edge, 0.5, 1.2);
+                if (bevels && edge.inside < 2.0) return leaning(edge, 0.5, 1.2);
                 return std::nullopt;
             });
         };

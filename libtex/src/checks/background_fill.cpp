@@ -14,14 +14,15 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr float kFillLength = 0.5f;  // of a vector that has a direction
-constexpr float kFillMixed = 0.25f;  // sine of the angle to the mixtures: what rounding and texel blocks leave
-constexpr float kFillAlike = 0.9f;   // cosine of the angle to a neighbour: 26 degrees
-constexpr int kFillAlikeTexels = 2;  // neighbours: along a border there are two
-constexpr int kFillReach = 3;        // texels: filters mix over two, and the normal that was mixed in lies beyond
-constexpr double kFillTurn = 5.0;    // degrees that count as a change
+constexpr float kFillLength = 0.5f;   // of a vector that has a direction
+constexpr float kFillMixed = 0.25f;   // sine of the angle to the mixtures: what rounding and texel blocks leave
+constexpr float kFillRinging = 0.5f;  // from the value: what JPEG makes of it
+constexpr float kFillAlike = 0.9f;    // cosine of the angle to a neighbour: 26 degrees
+constexpr int kFillAlikeTexels = 2;   // neighbours: along a border there are two
+constexpr int kFillReach = 3;         // texels: filters mix over two, and the normal that was mixed in lies beyond
+constexpr double kFillTurn = 5.0;     // degrees that count as a change
 constexpr std::int64_t kFillTexels = 16;
-constexpr double kFillShare = 0.1;  // of the texels that are no pure background: see VERDICTS.md
+constexpr double kFillShare = 0.12;  // of the mixtures that have a direction: VERDICTS.md
 
 struct FillVector {
     float x = 0.0f, y = 0.0f, z = 0.0f;
@@ -38,17 +39,21 @@ public:
     Filling(const Stored& stored, const Background& background)
         : stored_(stored), background_(background), extent_(stored.extent()), x_(stored.channel(Component::x)),
           y_(stored.channel(Component::y)), z_(stored.channel(Component::z)),
-          value_(completed({background.value[0], background.value[1], background.value[2]})) {}
+          value_(completed({background.value[0], background.value[1], background.value[2]})),
+          is_grey_(z_ >= 0 && is_near(value_, {value_.x, value_.x, value_.x}, kTwinNear)) {}
 
     [[nodiscard]] Extent extent() const { return extent_; }
     [[nodiscard]] FillVector at(int i, int j) const {
         return completed(
             {stored_.component(x_, i, j), stored_.component(y_, i, j), z_ < 0 ? 0.0f : stored_.component(z_, i, j)});
     }
-    // A hole with this vector, and what fills it: whether that takes a normal away.
-    [[nodiscard]] bool is_own(int i, int j, const FillVector& v) const {
+    // Whether the vector has a direction, and is not the value with JPEG's ringing.
+    [[nodiscard]] bool has_direction(const FillVector& v) const {
         const float length = v.length();
-        if (!(length >= kFillLength) || !std::isfinite(length)) return false;
+        return length >= kFillLength && std::isfinite(length) && !is_near(v, value_, kFillRinging);
+    }
+    // Whether filling a hole with this vector takes a normal away.
+    [[nodiscard]] bool is_own(int i, int j, const FillVector& v) const {
         const FillVector u = v.unit();
         return has_alike(i, j, u) && !is_mixture(i, j, u);
     }
@@ -88,8 +93,9 @@ private:
             const float nu = n.dot(u), bu = b.dot(u), nb = n.dot(b), across = 1.0f - nb * nb;
             // The nearest point of the plane of n and b, or of the rays at its sides.
             float kept = std::max({nu, bu, 0.0f});
-            if (const float p = nu - bu * nb, q = bu - nu * nb; across > 1e-4f && p > 0.0f && q > 0.0f)
-                kept = std::sqrt((p * nu + q * bu) / across);
+            // JPEG blurs colours more than brightness, so that normals are mixed with grey beyond the value, too.
+            const float p = nu - bu * nb, q = bu - nu * nb;
+            if (across > 1e-4f && p > 0.0f && (q > 0.0f || is_grey_)) kept = std::sqrt((p * nu + q * bu) / across);
             return 1.0f - kept * kept < kFillMixed * kFillMixed;
         });
     }
@@ -148,6 +154,7 @@ private:
     const Extent extent_;
     const int x_, y_, z_;
     const FillVector value_;
+    const bool is_grey_;  // black and white, too
 };
 
 double fill_turn(const FillVector& a, const FillVector& b) {
@@ -185,25 +192,29 @@ Result<FillHarm> harm_of_filling(const Stored& stored, const Background& backgro
         }
     }
     if (mixed < kFillTexels) return harm;
-    // Holes become the angles by which they turn.
+    // Holes become the angles by which they turn, or -1 if they have a direction, but not their own.
     const auto fill = [&](const NearestTexel& hole) {
         float& degrees = holes.at(hole.i, hole.j);
         degrees = 0.0f;
         if (!background.is_mixed(hole.i, hole.j)) return;
         const FillVector v = filling.at(hole.i, hole.j);
+        if (!filling.has_direction(v)) return;
+        degrees = -1.0f;
         const double turn = fill_turn(v.unit(), filling.at(hole.column, hole.row).unit());
         if (turn >= kFillTurn && filling.is_own(hole.i, hole.j, v)) degrees = static_cast<float>(turn);
     };
     if (auto done = visit_holes(holes.view(), Wrap::clamp, Wrap::clamp, execution.quiet(), {}, fill); !done)
         return done.error();
+    std::int64_t directed = 0;
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
+            directed += holes.at(i, j) != 0.0f ? 1 : 0;
             if (!(holes.at(i, j) > 0.0f)) continue;
             if (harm.texels++ == 0) harm.column = i, harm.row = j;
             harm.degrees = std::max(harm.degrees, static_cast<double>(holes.at(i, j)));
         }
     }
-    if (harm.texels < std::max(kFillTexels, static_cast<std::int64_t>(kFillShare * static_cast<double>(mixed))))
+    if (harm.texels < std::max(kFillTexels, static_cast<std::int64_t>(kFillShare * static_cast<double>(directed))))
         harm.texels = 0;
     return harm;
 }
