@@ -162,11 +162,11 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     return {};
 }
 
-// A value that points straight into the surface is background if the other vectors do not. In object space, and where
-// blue is inverted, they do.
+// A value that points straight into the surface is background if the other vectors do not, but for those that a filter
+// mixed with it. In object space, and where blue is inverted, they do.
 bool others_point_outwards(const StoredVectors& map, Extent extent, const Background& background) {
     constexpr float kBehind = -0.1f;
-    constexpr double kMostBehind = 0.01;
+    constexpr double kMostBehind = 0.01, kLeastOthers = 0.005;
     std::int64_t behind = 0, others = 0;
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
@@ -175,7 +175,8 @@ bool others_point_outwards(const StoredVectors& map, Extent extent, const Backgr
             behind += map.at(i, j).z < kBehind ? 1 : 0;
         }
     }
-    return static_cast<double>(behind) <= kMostBehind * static_cast<double>(others);
+    return static_cast<double>(behind) <= kMostBehind * static_cast<double>(others) &&
+           static_cast<double>(others) >= kLeastOthers * static_cast<double>(extent.texels());
 }
 
 // Whether alpha 0 hides texels: alpha is a cut-out, nearly 1 in half of the others or more, or no normals are below it.
@@ -241,9 +242,9 @@ Result<std::optional<Background>> find_background(const Stored& stored, const Ex
     background.width = extent.width;
     background.mask.resize(static_cast<std::size_t>(extent.texels()));
     if (!mark_value(map, extent, background)) return transparent;
-    if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;
     const int reach = stored.in_blocks ? 2 * kMixReach : kMixReach;
     if (auto done = mark_mixtures(map, extent, reach, execution, background); !done) return done.error();
+    if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;
     return std::optional(std::move(background));
 }
 
