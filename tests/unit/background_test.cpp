@@ -190,10 +190,8 @@ TEST(BackgroundFill, IsHarmlessWhereOneColorLiesAroundCharts) {
         const reference::Codes codes = with_background(waves(), color);
         EXPECT_EQ(harm_of(reference::texture_of(codes)), "") << color[0];
     }
-    for (const Color& color : {Color{0, 0, 0}, Color{128, 128, 128}}) {
-        const reference::Codes codes = reference::jpeg(with_background(waves(), color), 75);
-        EXPECT_EQ(harm_of(reference::texture_of(codes)), "") << color[0];
-    }
+    const reference::Codes grey = with_background(waves(), {128, 128, 128});
+    EXPECT_EQ(harm_of(reference::texture_of(reference::jpeg(grey, 75))), "");
 }
 
 // An edge of two texels that leans outwards, longer than unit vectors: the fix would give it the normals inside.
