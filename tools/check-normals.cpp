@@ -185,7 +185,9 @@ Result<void> CheckNormals::process(cli::Job& job) {
     if (!mesh_.has_mesh() && is_model(job.task.input)) return process_model(job);
     const Execution execution = job.until(documents_.has_page() ? 0.5 : 1.0);
     const auto start = std::chrono::steady_clock::now();
-    auto report = check_one(job, rules_.demands_of(job.task.input).checks, execution);
+    CheckOptions checks = rules_.demands_of(job.task.input).checks;
+    checks.marks = documents_.marks();
+    auto report = check_one(job, std::move(checks), execution);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     if (!report) return report.error();
     if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
@@ -221,7 +223,8 @@ Result<void> CheckNormals::process_model(cli::Job& job) {
         job.say(fmt::format("{}: no material uses a normal map\n", cli::printable(job.task.input)));
     job.report["maps"] = cli::Json::array();
     job.report["findings"] = cli::Json::array();
-    const ModelCheckOptions options{rules_.demands_of(job.task.input).checks, {}, mesh_.decoder(), mesh_.tangents()};
+    ModelCheckOptions options{rules_.demands_of(job.task.input).checks, {}, mesh_.decoder(), mesh_.tangents()};
+    options.checks.marks = documents_.marks();
     for (std::size_t k = 0; k < maps->size(); ++k) {
         const ModelMap& map = (*maps)[k];
         const double share = (static_cast<double>(k) + 1.0) / static_cast<double>(maps->size());

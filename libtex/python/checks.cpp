@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is wrong with a texture: rules, findings, reports.
 
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include "checks.h"
@@ -50,6 +55,7 @@ void read_checks(const Checking& given, Checks& checks) {
     options.enable = rules_from(given.enable, "enable");
     options.disable = rules_from(given.disable, "disable");
     options.any_length = given.any_length;
+    options.marks = given.marks;
     options.swizzle = given.swizzle;
     if (!given.severity.is_none()) {
         for (const auto& [rule, word] : dict_from(given.severity, "severity"))
@@ -97,6 +103,25 @@ py::object checked_file(const py::object& path, Checking& given, ReadOptions& re
     return sound(running.run([&](const Execution& e) { return check_file(file, checks.options, read, e); }));
 }
 
+py::object marks_of(const Finding& finding) {
+    if (!finding.marks) return py::none();
+    const Marks& marks = *finding.marks;
+    py::array_t<std::uint8_t> squares({marks.extent.height, marks.extent.width});
+    std::transform(marks.squares.begin(), marks.squares.end(), squares.mutable_data(),
+                   [](Mark mark) { return static_cast<std::uint8_t>(mark); });
+    py::dict facts, texels;
+    py::list names;
+    for (const auto& row : kMarkNames) {
+        names.append(std::string(row.name));
+        texels[py::str(std::string(row.name))] = marks.count(row.value);
+    }
+    facts["squares"] = std::move(squares);
+    facts["names"] = std::move(names);
+    facts["side"] = marks.side;
+    facts["texels"] = std::move(texels);
+    return facts;
+}
+
 void add_findings(Module& module) {
     Class<Region>(module, "Region", "Texels of a level; y counts rows from the top.")
         .property("level", "int", "The level.", [](const Region& r) { return r.level; })
@@ -126,6 +151,13 @@ void add_findings(Module& module) {
                   [](const Finding& f) { return f.confidence; })
         .property("regions", "list[Region]", "Where; empty for the whole file.",
                   [](const Finding& f) { return f.regions; })
+        .property("fix_harms", "str",
+                  "What the rule's fix would do to this map beside its purpose, as the rule tried; else empty.",
+                  [](const Finding& f) { return str_of(f.fix_harms); })
+        .property("marks", "dict[str, Any] | None",
+                  "With check(marks=...): 'squares', an array (height, width) of numbers of 'names', the 'side' of a "
+                  "square in texels, and 'texels', how many have each mark.",
+                  [](const Finding& f) { return marks_of(f); })
         .property("texel", "tuple[int, int] | None", "(column, row) of the first affected texel.",
                   [](const Finding& f) -> py::object {
                       if (!f.has_texel) return py::none();
@@ -240,7 +272,8 @@ void add_checks(Module& module) {
         "dict "
         "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
         "select_part(), and `decoder` the engine; with `any_length`, no rule judges the lengths of vectors, and "
-        "`swizzle` names the layout. Raises "
+        "`swizzle` names the layout; with `marks` above 0, findings have marks of at most so many squares on a side. "
+        "Raises "
         "BadOptionError if a rule or a requirement "
         "does not exist.",
         [](Call& call, Checking& given, ReadKeyword& keyword, Running& running) -> py::object {

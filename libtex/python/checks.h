@@ -30,6 +30,7 @@ void each_judging_field(Judging& o, F& f) {
 struct Checking : Judging {
     py::object height = py::none(), mesh = py::none();
     bool any_length = false;
+    int marks = 0;
     std::optional<Swizzle> swizzle = {};
     Decoder decoder = Decoder::gltf;
 };
@@ -41,6 +42,7 @@ void each_field(Checking& o, F& f) {
     f("mesh", o.mesh, "SelectedPart | None");
     f("decoder", o.decoder);
     f("any_length", o.any_length);
+    f("marks", o.marks);
     f("swizzle", o.swizzle);
 }
 

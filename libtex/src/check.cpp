@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <tex/format.h>
@@ -20,6 +21,7 @@
 #include "checks/file_rules.h"
 #include "checks/findings.h"
 #include "checks/kind_rules.h"
+#include "checks/marks.h"
 #include "checks/mesh_fit.h"
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
@@ -128,6 +130,8 @@ Result<void> validate(const CheckOptions& options) {
         if (auto found = first_error(known(name), check_known("severity", kSeverityNames, severity)); !found)
             return found;
     }
+    if (options.marks < 0 || options.marks > kMostMarks)
+        return bad_option("marks must be from 0 to " + std::to_string(kMostMarks));
     return first_error(check_known("require.format", kFormatNames, options.require.format),
                        check_known("require.encoding", kEncodingNames, options.require.encoding),
                        check_known("require.y", kYAxisNames, options.require.y));
@@ -161,7 +165,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         Findings findings(options);
         check_file_rules(context, findings);
         const PictureKind kind = check_kind_rules(context, findings);
-        check_value_rules(context, findings);
+        if (auto done = check_value_rules(context, findings); !done) return done.error();
         if (auto done = check_extra_rules(context, findings); !done) return done.error();
         if (auto done = check_damage_rules(context, findings); !done) return done.error();
         if (auto done = check_sign_rules(context, findings); !done) return done.error();
@@ -180,6 +184,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         check_model_rules(context, findings);
         report.file = file;
         report.findings = findings.take(report.explained);
+        if (options.marks > 0) mark_texels(context, report.findings);
         report.format = texture.format;
         report.swizzle = context.stored.swizzle;
         report.extent = texture.extent();

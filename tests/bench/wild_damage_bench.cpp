@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// wild_damage_bench: which of ten damages the rules of check.h find in 40 clean maps of ../shared/data/wild4.
+// wild_damage_bench: which damages the rules of check.h find in 40 clean maps of ../shared/data/wild4.
 //
 //     wild_damage_bench [MAPS]        the number of maps (40)
 //
@@ -57,6 +57,8 @@ const std::vector<Damage>& damages() {
         {"sRGB decoded", "N301", srgb_decode},
         {"turned by 90 degrees", "N308", quarter_turn},
         {"JPEG of quality 50", "N304", [](const Codes& c) { return jpeg(c, 50); }},
+        {"JPEG of quality 75", "N304", [](const Codes& c) { return jpeg(c, 75); }},
+        {"JPEG of quality 90", "N304", [](const Codes& c) { return jpeg(c, 90); }},
         {"x negated", "N401",
          [](const Codes& c) {
              return each(c, [](unsigned char* t) { t[0] = static_cast<unsigned char>(255 - t[0]); });

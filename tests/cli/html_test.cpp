@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reports/html_marks.h"
 #include "reports/html_report.h"
 
 namespace tex::cli {
@@ -89,6 +90,9 @@ TEST(HtmlSizes, ShrinkWithTheNumberOfFiles) {
     EXPECT_EQ(html_sizes(100).view, 128);
     EXPECT_EQ(html_sizes(5000).lit, 0);
     EXPECT_GT(html_sizes(5000).thumbnail, 0);
+    EXPECT_EQ(marks_side(1), 512);
+    EXPECT_EQ(marks_side(100), 128);
+    EXPECT_EQ(marks_side(5000), 0);
 }
 
 }  // namespace

@@ -42,6 +42,20 @@ TEST_F(Report, HoldsFilesFindingsFiguresAndFixes) {
     EXPECT_FALSE(page_has("://")) << "nothing is loaded from elsewhere";
 }
 
+TEST_F(Report, ShowsWhichTexelsSpoke) {
+    const std::string broken = std::string(TEX_SOURCE_DIR) + "/samples/broken/";
+    check({broken + "N215-background.png", "up.dds", "--report", "page.html"});
+    for (const char* text : {"<figure class=\"marks\">", "<figcaption>Orange: ", " of the texels spoke for N215",
+                             "those that spoke lie in columns ", "style=\"--map: url(data:image/png;base64,"}) {
+        EXPECT_TRUE(page_has(text)) << text;
+    }
+    check({broken + "N302-srgb-encoded.png", "--report", "page.html"});
+    EXPECT_TRUE(page_has("No texel spoke alone: the rule judges the map as a whole."));
+    EXPECT_FALSE(page_has("<figure class=\"marks\">"));
+    check({"up.dds", "--report", "page.html"});
+    EXPECT_FALSE(page_has("Orange: ") || page_has("No texel spoke")) << "a page without findings";
+}
+
 TEST_F(Report, HasTheSameBytesForEveryNumberOfThreads) {
     check({"up.dds", "down.png", "--report", "one.html", "--threads", "1"});
     check({"down.png", "up.dds", "--report", "many.html", "--threads", "4"});

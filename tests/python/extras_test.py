@@ -84,6 +84,19 @@ def test_data_that_are_given_have_the_bytes_of_the_commands(commands, picture):
     assert "N201" in [finding.id for finding in tex.check("l.exr")] and "N201" not in kinds
 
 
+def test_findings_say_which_texels_spoke():
+    rows, columns = np.indices((64, 64))
+    colors = np.stack([128 + 40 * np.sin(columns / 5), 128 + 40 * np.cos(rows / 7), np.full((64, 64), 247)], axis=2)
+    colors = colors.astype(np.uint8)
+    colors[10:15, 40:44] = (190, 128, 20)
+    found = {finding.id: finding for finding in tex.check(colors, marks=64)}
+    marks = found["N202"].marks
+    spoke = marks["squares"] == marks["names"].index("spoke")
+    assert marks["side"] == 1 and marks["texels"]["spoke"] == 20 and spoke.sum() == 20 and spoke[10:15, 40:44].all()
+    assert found["N202"].fix_harms == ""
+    assert all(finding.marks is None for finding in tex.check(colors))
+
+
 def test_heights_that_are_baked_go_into_alpha(commands):
     write_picture("h.png", CODES, "gray")
     commands("bake-normals", "h.png", "-o", "n.dds", "--format", "rgba8", "--alpha", "height", "--kind", "height")

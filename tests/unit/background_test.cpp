@@ -120,6 +120,19 @@ TEST(Background, FiltersMixItIntoItsNeighbours) {
     EXPECT_EQ(ids(checked(reference::texture_of(soft))), Ids{"N215"});
 }
 
+// Blue 0 beside middle red and green points into the surface, and so does what a filter makes of it at edges.
+TEST(Background, OfBlueZeroMayHaveSoftEdges) {
+    const reference::Codes sharp = with_background(waves(), {128, 128, 0});
+    reference::Codes soft = sharp;
+    for (int j = 1; j < kExtent.height; ++j) {
+        for (int i = 1; i < kExtent.width; ++i) {
+            for (int c = 0; c < 3 && is_chart(i, j) != is_chart(i - 1, j - 1); ++c)
+                soft.at(i, j, c) = static_cast<unsigned char>((3 * sharp.at(i, j, c) + sharp.at(i - 1, j - 1, c)) / 4);
+        }
+    }
+    EXPECT_EQ(ids(checked(reference::texture_of(soft))), Ids{"N215"});
+}
+
 TEST(Background, ScatteredTexelsAreDamage) {
     reference::Codes codes = reference::codes_of(waves());
     for (int k = 0; k < kExtent.texels(); k += 37) {
@@ -160,6 +173,64 @@ TEST(Background, LeavesTheTextOfWhatIsUndecidedTrue) {
     EXPECT_NE(report.findings[1].message.find("the correlation is nearer to 0 than 0.2 (correlation 0.00"),
               std::string::npos)
         << report.findings[1].message;
+}
+
+// The harm that the fix of N215 would do.
+std::string harm_of(const Texture& texture) {
+    const CheckReport report = checked(texture);
+    for (const Finding& finding : report.findings) {
+        if (finding.rule->id == "N215") return finding.fix_harms;
+    }
+    ADD_FAILURE() << "no background was found";
+    return {};
+}
+
+TEST(BackgroundFill, IsHarmlessWhereOneColorLiesAroundCharts) {
+    for (const Color& color : {Color{0, 0, 0}, Color{128, 128, 128}, Color{255, 255, 255}, Color{30, 200, 10}}) {
+        const reference::Codes codes = with_background(waves(), color);
+        EXPECT_EQ(harm_of(reference::texture_of(codes)), "") << color[0];
+    }
+    const reference::Codes grey = with_background(waves(), {128, 128, 128});
+    EXPECT_EQ(harm_of(reference::texture_of(reference::jpeg(grey, 75))), "");
+}
+
+// An edge of two texels that leans outwards, longer than unit vectors: the fix would give it the normals inside.
+TEST(BackgroundFill, WouldDeleteBevels) {
+    const double radius = 60.0;
+    reference::Codes codes = with_background(waves(), {0, 0, 0});
+    int bevels = 0;
+    for (int j = 0; j < kExtent.height; ++j) {
+        for (int i = 0; i < kExtent.width; ++i) {
+            const double x = i - 70.0, y = j - 80.0, r = std::sqrt(x * x + y * y);
+            if (r >= radius || r < radius - 2.0) continue;
+            ++bevels;
+            const double lean = 1.2 * std::sqrt(0.75);
+            const double components[] = {lean * x / r, -lean * y / r, 0.6};
+            for (int c = 0; c < 3; ++c)
+                codes.at(i, j, c) = static_cast<unsigned char>(std::lround(127.5 * (1.0 + components[c])));
+        }
+    }
+    const std::string harm = harm_of(reference::texture_of(codes));
+    ASSERT_EQ(harm.rfind("filling would turn ", 0), 0u) << harm;
+    const int turned = std::stoi(harm.substr(19));
+    EXPECT_GT(turned, bevels / 3);
+    EXPECT_LE(turned, bevels);
+}
+
+// A colour of bevels that are too long is no background: there is one that leans as far the other way.
+TEST(BackgroundFill, KnowsBevelsByTheirTwins) {
+    reference::Codes codes = reference::codes_of(waves());
+    for (int j = 40; j < 140; ++j) {
+        for (int i = 0; i < 5; ++i) {
+            const Color left{0, 20, 150}, right{255, 235, 150};
+            for (std::size_t c = 0; c < 3; ++c) {
+                codes.at(40 + i, j, static_cast<int>(c)) = static_cast<unsigned char>(left[c]);
+                codes.at(140 + i, j, static_cast<int>(c)) = static_cast<unsigned char>(right[c]);
+            }
+        }
+    }
+    const std::string harm = harm_of(reference::texture_of(codes));
+    EXPECT_NE(harm.find("bevels"), std::string::npos) << harm;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "cli/usage_error.h"
 #include "reports/findings.h"
 #include "reports/html_map.h"
+#include "reports/html_marks.h"
 #include "reports/sarif.h"
 #include "tasks/depfile.h"
 
@@ -62,6 +63,7 @@ void CheckDocuments::check(const std::vector<std::string>& inputs, std::vector<N
     }
     if (has_page()) check_read_twice("--report", inputs);
     sizes_ = html_sizes(inputs.size());
+    marks_side_ = has_page() ? marks_side(inputs.size()) : 0;
     new_baseline_ = Baseline(baseline_written_);
 }
 
@@ -117,7 +119,9 @@ Result<void> CheckDocuments::add_to_page(Job& job, const JudgedReport& judged, c
         else if (drawn.error().code != ErrorCode::bad_option)
             return drawn.error();
     }
-    page_.add(title_of(report), check_entry(report, judged.require, judged.waived, map ? &*map : nullptr));
+    auto entry = check_entry(report, judged.require, judged.waived, map ? &*map : nullptr, marks_side_ > 0);
+    if (!entry) return entry.error();
+    page_.add(title_of(report), std::move(*entry));
     return {};
 }
 

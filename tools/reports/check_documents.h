@@ -30,6 +30,8 @@ public:
 
     [[nodiscard]] bool are_written() const { return !written().empty(); }
     [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
+    // CheckOptions::marks that the page needs.
+    [[nodiscard]] int marks() const { return marks_side_; }
     // Findings are printed for GitHub instead of for people.
     [[nodiscard]] bool is_for_github() const { return is_for_github_; }
     [[nodiscard]] bool writes_baseline() const { return !baseline_written_.empty(); }
@@ -73,6 +75,7 @@ private:
     Baseline new_baseline_;
     HtmlReport page_{"check-normals", check_columns()};
     HtmlSizes sizes_;  // of the page's pictures
+    int marks_side_ = 0;
     // By file, so that the documents do not depend on the order in which files end.
     std::map<std::string, JudgedReport> reports_;
 };

@@ -225,7 +225,7 @@ std::vector<const Finding*> fixed_together(const Finding& finding, const CheckRe
     for (const Finding& other : report.findings) {
         const bool is_same = &other == &finding;
         if (!is_same && (!can_be_joined(finding, report) || !can_be_joined(other, report))) continue;
-        if (!is_same && !is_clear(other.rule->id, report, require)) continue;
+        if (!is_same && (!is_clear(other.rule->id, report, require) || !other.fix_harms.empty())) continue;
         const auto others = target_of(other.rule->id, report, require);
         if (is_same || (target && others && target->encoding == others->encoding)) together.push_back(&other);
     }
@@ -349,6 +349,7 @@ std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report
 
 Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements& require) {
     const std::string_view id = finding.rule->id;
+    if (!finding.fix_harms.empty()) return {"No command is printed, because " + finding.fix_harms + "."};
     if (auto fix = tangent_fix(finding, report)) return *fix;
     if (std::string command = repair_command(finding, report, require); !command.empty())
         return {std::move(command), true, id == "N220" ? kInvertedAdvice : ""};

@@ -12,6 +12,7 @@
 #include "reports/findings.h"
 #include "reports/fixes.h"
 #include "reports/html.h"
+#include "reports/html_marks.h"
 #include "reports/html_report.h"
 
 namespace tex::cli {
@@ -53,7 +54,8 @@ std::string places_text(const Finding& finding) {
     return text;
 }
 
-std::string finding_html(const Finding& finding, const CheckReport& report, const Requirements& require) {
+Result<std::string> finding_html(const Finding& finding, const CheckReport& report, const Requirements& require,
+                                 bool has_marks) {
     const Rule& rule = *finding.rule;
     std::string_view sentence = rule.sentence;
     sentence.remove_suffix(1);  // its full stop
@@ -70,7 +72,23 @@ std::string finding_html(const Finding& finding, const CheckReport& report, cons
     const char* form = fix.is_command ? "<p class=\"fix\">Fix: <code>{}</code></p>\n" : "<p class=\"fix\">{}</p>\n";
     if (!fix.text.empty()) html += fmt::format(fmt::runtime(form), html_text(fix.text));
     if (!fix.advice.empty()) html += fmt::format("<p class=\"fix\">{}</p>\n", html_text(fix.advice));
+    if (has_marks) {
+        auto marks = marks_html(finding, title_of(report));
+        if (!marks) return marks.error();
+        html += *marks;
+    }
     return html + "</li>\n";
+}
+
+Result<std::string> list_html(const std::vector<Finding>& findings, const CheckReport& report,
+                              const Requirements& require, bool has_marks) {
+    std::string html = "<ul class=\"findings\">\n";
+    for (const Finding& finding : findings) {
+        auto item = finding_html(finding, report, require, has_marks);
+        if (!item) return item.error();
+        html += *item;
+    }
+    return html + "</ul>\n";
 }
 
 std::string facts_html(const CheckReport& report) {
@@ -133,8 +151,8 @@ std::string level_row(const ComparedLevel& level) {
 
 std::vector<std::string> check_columns() { return {"findings", "format", "extent", "levels", "green"}; }
 
-HtmlEntry check_entry(const CheckReport& report, const Requirements& require, const std::vector<Finding>& waived,
-                      HtmlMap* map) {
+Result<HtmlEntry> check_entry(const CheckReport& report, const Requirements& require,
+                              const std::vector<Finding>& waived, HtmlMap* map, bool has_marks) {
     HtmlEntry entry;
     entry.title = title_of(report);
     entry.row = "<td>";
@@ -164,17 +182,17 @@ HtmlEntry check_entry(const CheckReport& report, const Requirements& require, co
         entry.body = facts_html(report);
     }
     if (!report.findings.empty()) {
-        entry.body += "<ul class=\"findings\">\n";
-        for (const Finding& finding : report.findings) entry.body += finding_html(finding, report, require);
-        entry.body += "</ul>\n";
+        auto list = list_html(report.findings, report, require, has_marks && map != nullptr);
+        if (!list) return list.error();
+        entry.body += *list;
     } else if (!report.error) {
         entry.body += waived.empty() ? "<p class=\"nothing\">Nothing found.</p>\n"
                                      : "<p class=\"nothing\">Nothing found that the baseline does not accept.</p>\n";
     }
     if (!waived.empty()) {
-        entry.body += "<p>Accepted by the baseline:</p>\n<ul class=\"findings\">\n";
-        for (const Finding& finding : waived) entry.body += finding_html(finding, report, require);
-        entry.body += "</ul>\n";
+        auto list = list_html(waived, report, require, has_marks && map != nullptr);
+        if (!list) return list.error();
+        entry.body += "<p>Accepted by the baseline:</p>\n" + *list;
     }
     if (map != nullptr) entry.maps.push_back(std::move(*map));
     return entry;

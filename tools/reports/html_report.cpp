@@ -10,6 +10,7 @@
 #include <tex/tex.h>
 
 #include "reports/html.h"
+#include "reports/html_marks.h"
 #include "reports/report_page.h"
 
 namespace tex::cli {
@@ -100,9 +101,18 @@ std::string stages(const HtmlEntry& entry, std::size_t number, const HtmlReport:
     return html + "</div>\n";
 }
 
-// The number of characters that pictures and levels take.
+// The map as it is seen below the marks of findings.
+const HtmlPicture& below_marks(const HtmlMap& map) { return map.lit.png.empty() ? map.thumbnail : map.lit; }
+
+std::string section_style(const HtmlEntry& entry) {
+    if (!has_marks(entry.body) || entry.maps.empty()) return {};
+    return fmt::format(" style=\"--map: url(data:image/png;base64,{})\"", base64(below_marks(entry.maps.front()).png));
+}
+
+// The number of characters that text, pictures and levels take.
 std::size_t size_of(const HtmlEntry& entry) {
-    std::size_t sum = 0;
+    std::size_t sum = entry.body.size();
+    if (has_marks(entry.body) && !entry.maps.empty()) sum += base64_size(below_marks(entry.maps.front()).png.size());
     for (const HtmlPicture& picture : entry.extras) sum += picture.png.size() * 4 / 3;
     for (const HtmlMap& map : entry.maps) sum += map.picture_size() + map.level_size();
     return sum;
@@ -216,8 +226,8 @@ std::string HtmlReport::sections() const {
     std::size_t map_number = 0;
     for (const auto& [key, entry] : entries_) {
         html += fmt::format(
-            "<section class=\"file\" id=\"file-{}\" data-words=\"{}\">\n<h2>{}</h2>\n<div class=\"columns\">\n",
-            ++number, html_text(entry.words), html_text(entry.title));
+            "<section class=\"file\" id=\"file-{}\" data-words=\"{}\"{}>\n<h2>{}</h2>\n<div class=\"columns\">\n",
+            ++number, html_text(entry.words), section_style(entry), html_text(entry.title));
         // The pictures of a single map are beside it; those of two maps are below them.
         html += stages(entry, map_number, meshes) + "<div class=\"facts\">\n" + entry.body +
                 figures(entry.extras, entry.title) +

@@ -79,8 +79,9 @@ private:
 // The columns and an entry of check-normals. `map` is null for a file that could not be decoded.
 // `waived` are findings that a baseline accepts.
 [[nodiscard]] std::vector<std::string> check_columns();
-[[nodiscard]] HtmlEntry check_entry(const CheckReport& report, const Requirements& require,
-                                    const std::vector<Finding>& waived, HtmlMap* map);
+// With `has_marks`, findings have pictures of the texels that spoke for them. Errors: out_of_memory.
+[[nodiscard]] Result<HtmlEntry> check_entry(const CheckReport& report, const Requirements& require,
+                                            const std::vector<Finding>& waived, HtmlMap* map, bool has_marks);
 
 // One level that compare-normals compared.
 struct ComparedLevel {

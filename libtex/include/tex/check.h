@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -195,6 +197,32 @@ struct CheckOptions {
     const HeightField* height = nullptr;  // the map's heights, for the rules of the pair; not owned
     const MeshToCheck* mesh = nullptr;    // the mesh that the map is on; not owned
     const MapInModel* model = nullptr;    // the model that uses the map; not owned
+    // Above 0: findings have Marks, with at most so many squares on a side (kMostMarks at most). They take a look at
+    // every texel for each finding.
+    int marks = 0;
+};
+
+inline constexpr int kMostMarks = 4096;
+
+// What a rule made of texels.
+enum class Mark : std::uint8_t { none, spoke, background, transparent, padding };
+inline constexpr int kMarkCount = 5;
+
+inline constexpr Named<Mark> kMarkNames[] = {
+    {Mark::none, "none", "was looked at, and did not speak for the finding"},
+    {Mark::spoke, "spoke", "spoke for the finding"},
+    {Mark::background, "background", "was left out: background, and what filters mixed with it"},
+    {Mark::transparent, "transparent", "was left out: alpha is 0"},
+    {Mark::padding, "padding", "was left out: streaks of padding between charts"},
+};
+
+// Which texels of the base level spoke for a finding, and which its rule left out, in squares for a picture.
+struct Marks {
+    Extent extent{1, 1};        // in squares
+    int side = 1;               // of a square, in texels; those at the right and lower border may be cut
+    std::vector<Mark> squares;  // in rows from the top: spoke if a texel of it did; else what most of them are
+    std::array<std::int64_t, kMarkCount> texels{};  // of each mark
+    [[nodiscard]] std::int64_t count(Mark mark) const { return texels[static_cast<std::size_t>(mark)]; }
 };
 
 // Texels [x, x + width) x [y, y + height) of a level; y counts rows from the top.
@@ -213,6 +241,11 @@ struct Finding {
     std::vector<Region> regions;  // where; empty for the whole file
     bool has_texel = false;       // (column, row) is the first affected texel, on regions.front().level
     int column = 0, row = 0;
+    // The rule tried its fix, and this is what the fix would do beside its purpose; then nobody ought to apply it.
+    std::string fix_harms = {};
+    // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels
+    // or the file; nothing if it left out no texels, either.
+    std::optional<Marks> marks = {};
 };
 
 // The direction of green, from the curl of the slopes. It shows that one of red and green is mirrored, but not which:

@@ -97,7 +97,7 @@ std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Exte
                       value(bin % kGridBins)};
 }
 
-// Marks the texels that have the value with 1. True if most of them lie together: single ones are damage.
+// Marks the texels that have the value. True if most of them lie together: single ones are damage.
 bool mark_value(const StoredVectors& map, Extent extent, Background& background) {
     std::int64_t together = 0;
     const auto near = [](float a, float b) { return std::abs(a - b) <= kSame; };
@@ -109,7 +109,7 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
             if (mask[i] != 0) continue;
             const StoredVector v = map.at(i, j);
             if (!near(v.x, value[0]) || !near(v.y, value[1]) || !near(v.z, value[2])) continue;
-            mask[i] = 1;
+            mask[i] = Background::kValue;
             if (background.texels++ == 0) background.column = i, background.row = j;
             together += (i == 0 || mask[i - 1] != 0) && (j == 0 || mask[i - extent.width] != 0) ? 1 : 0;
         }
@@ -118,7 +118,7 @@ bool mark_value(const StoredVectors& map, Extent extent, Background& background)
            static_cast<double>(together) >= kTogether * static_cast<double>(background.texels);
 }
 
-// Marks with 2 what a filter or a block codec mixed with it.
+// Marks what a filter or a block codec mixed with it.
 Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, const Execution& execution,
                            Background& background) {
     const auto at = [&](int i, int j) -> std::uint8_t& {
@@ -136,7 +136,7 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     const auto is_near = [&](int i, int j, int within) {
         for (int y = std::max(0, j - within); y <= std::min(extent.height - 1, j + within); ++y) {
             for (int x = std::max(0, i - within); x <= std::min(extent.width - 1, i + within); ++x) {
-                if (at(x, y) == 1) return true;
+                if (at(x, y) == Background::kValue) return true;
             }
         }
         return false;
@@ -156,17 +156,17 @@ Result<void> mark_mixtures(const StoredVectors& map, Extent extent, int reach, c
     if (auto done = parallel_for(silent, extent.height, kRowsPerPiece, find); !done) return done;
     background.masked = background.texels + background.transparent;
     for (int j = 0; j < extent.height; ++j) {
-        for (const int i : mixed[static_cast<std::size_t>(j)]) at(i, j) = 2;
+        for (const int i : mixed[static_cast<std::size_t>(j)]) at(i, j) = Background::kMixed;
         background.masked += static_cast<std::int64_t>(mixed[static_cast<std::size_t>(j)].size());
     }
     return {};
 }
 
-// A value that points straight into the surface is background if the other vectors do not. In object space, and where
-// blue is inverted, they do.
+// A value that points straight into the surface is background if the other vectors do not, but for those that a filter
+// mixed with it. In object space, and where blue is inverted, they do.
 bool others_point_outwards(const StoredVectors& map, Extent extent, const Background& background) {
     constexpr float kBehind = -0.1f;
-    constexpr double kMostBehind = 0.01;
+    constexpr double kMostBehind = 0.01, kLeastOthers = 0.005;
     std::int64_t behind = 0, others = 0;
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
@@ -175,7 +175,8 @@ bool others_point_outwards(const StoredVectors& map, Extent extent, const Backgr
             behind += map.at(i, j).z < kBehind ? 1 : 0;
         }
     }
-    return static_cast<double>(behind) <= kMostBehind * static_cast<double>(others);
+    return static_cast<double>(behind) <= kMostBehind * static_cast<double>(others) &&
+           static_cast<double>(others) >= kLeastOthers * static_cast<double>(extent.texels());
 }
 
 // Whether alpha 0 hides texels: alpha is a cut-out, nearly 1 in half of the others or more, or no normals are below it.
@@ -241,9 +242,9 @@ Result<std::optional<Background>> find_background(const Stored& stored, const Ex
     background.width = extent.width;
     background.mask.resize(static_cast<std::size_t>(extent.texels()));
     if (!mark_value(map, extent, background)) return transparent;
-    if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;
     const int reach = stored.in_blocks ? 2 * kMixReach : kMixReach;
     if (auto done = mark_mixtures(map, extent, reach, execution, background); !done) return done.error();
+    if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;
     return std::optional(std::move(background));
 }
 

@@ -32,6 +32,7 @@ struct Background {
 
     [[nodiscard]] bool holds(int i, int j) const { return at(i, j) != 0; }
     [[nodiscard]] bool is_transparent(int i, int j) const { return at(i, j) == kTransparent; }
+    [[nodiscard]] bool is_mixed(int i, int j) const { return at(i, j) == kMixed; }
     // Whether the value points straight into the surface, as blue 0 beside middle red and green does.
     [[nodiscard]] bool is_turned_over() const { return texels > 0 && is_turned_over(value[0], value[1], value[2]); }
     [[nodiscard]] static bool is_turned_over(float x, float y, float z) {
@@ -39,7 +40,8 @@ struct Background {
         return z < kNear - 1.0f && x < kNear && x > -kNear && y < kNear && y > -kNear;
     }
 
-    static constexpr std::uint8_t kTransparent = 3;  // in the mask
+    // In the mask.
+    static constexpr std::uint8_t kValue = 1, kMixed = 2, kTransparent = 3;
 
 private:
     [[nodiscard]] std::uint8_t at(int i, int j) const {

@@ -120,6 +120,7 @@ void judge_background(const CheckContext& context, std::int64_t covered, Finding
     Finding* const finding = findings.find("N215");
     if (finding == nullptr || !context.background) return;
     const double share = static_cast<double>(covered) / static_cast<double>(context.background->masked);
+    if (covered == 0) finding->fix_harms.clear();  // what is filled is never seen
     finding->message += covered == 0 ? "; no chart of the mesh covers any of it"
                                      : "; charts of the mesh cover " + percent(share) + " of it and its edges";
 }

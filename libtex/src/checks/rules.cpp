@@ -135,8 +135,8 @@ constexpr Rule kTextureRules[] = {
 
     {"N215", "background", values, warning, true, "The background is not filled.",
      "A colour that is no normal (black, grey, white) fills areas around the charts. Filters and block compression mix "
-     "it into the charts beside it, and each smaller level mixes in twice as much: dark lines along the seams. The "
-     "other rules leave it out.",
+     "it into charts, and smaller levels mix in more: dark lines along seams. Other rules leave it out. The fix is "
+     "tried first: no command is printed if it would turn texels beside charts that hold normals of their own.",
      "pack-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
     {"N216", "occlusion-roughness-metal", values, error, true, "The picture holds occlusion, roughness and metalness.",
      "Blue is 0 or 1 nearly everywhere, red is far from the middle, and no vector is of unit length. So are the "

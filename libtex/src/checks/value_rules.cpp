@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "checks/background_fill.h"
 #include "checks/context.h"
 #include "rows/math.h"
 
@@ -50,8 +51,8 @@ void check_lengths(const CheckContext& context, Findings& findings) {
     }
 }
 
-void check_background(const CheckContext& context, Findings& findings) {
-    if (!context.background || context.background->texels == 0) return;
+Result<void> check_background(const CheckContext& context, Findings& findings) {
+    if (!context.background || context.background->texels == 0 || !findings.wants("N215")) return {};
     const Background& background = *context.background;
     const Extent extent = context.stored.extent();
     const double share = static_cast<double>(background.texels) / static_cast<double>(extent.texels());
@@ -61,6 +62,10 @@ void check_background(const CheckContext& context, Findings& findings) {
     finding.figure = share;
     finding.unit = "share";
     set_texel(finding, background.column, background.row);
+    const auto harm = harm_of_filling(context.stored, background, context.execution);
+    if (!harm) return harm.error();
+    if (harm->is_any()) finding.fix_harms = harm->text();
+    return {};
 }
 
 void check_means(const CheckContext& context, Findings& findings) {
@@ -113,16 +118,17 @@ void check_channels(const CheckContext& context, Findings& findings) {
 
 }  // namespace
 
-void check_value_rules(const CheckContext& context, Findings& findings) {
+Result<void> check_value_rules(const CheckContext& context, Findings& findings) {
     if (format_info(context.texture.format).channels == 1) findings.add("N210", "the file has one channel alone");
-    if (!context.has_vectors) return;
+    if (!context.has_vectors) return {};
     if (context.constant && context.counts.texels > 1) {
         findings.add("N206", "every texel is the same as the first").unit = "";
     }
-    check_background(context, findings);
+    if (auto done = check_background(context, findings); !done) return done;
     check_lengths(context, findings);
     check_means(context, findings);
     check_channels(context, findings);
+    return {};
 }
 
 }  // namespace tex::inline v1

@@ -3,10 +3,12 @@
 
 #pragma once
 
+#include <tex/types.h>
+
 #include "checks/findings.h"
 
 namespace tex::inline v1 {
 
-void check_value_rules(const CheckContext& context, Findings& findings);
+Result<void> check_value_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

@@ -166,16 +166,22 @@ std::optional<MixedY> mixed_y(const Curl& curl, Extent extent, const SlopesAt& s
     if (curl.usable < kLeastUsable) return std::nullopt;
     Votes votes = votes_of(curl);
     if (!are_mixed(votes) || votes.median() < kClearCorrelation) return std::nullopt;
-    const std::size_t before = votes.up.size() + votes.down.size();
-    for (std::vector<Region>* regions : {&votes.up, &votes.down})
-        std::erase_if(*regions, [&](const Region& region) { return is_streaky(region, extent, slopes_at); });
-    votes.all -= before - votes.up.size() - votes.down.size();
+    std::vector<Region> streaks;
+    for (std::vector<Region>* regions : {&votes.up, &votes.down}) {
+        const auto first = std::stable_partition(regions->begin(), regions->end(), [&](const Region& region) {
+            return !is_streaky(region, extent, slopes_at);
+        });
+        streaks.insert(streaks.end(), first, regions->end());
+        regions->erase(first, regions->end());
+    }
+    votes.all -= streaks.size();
     if (!are_mixed(votes)) return std::nullopt;
     const bool up_is_less = votes.up.size() < votes.down.size();
     MixedY mixed;
     mixed.y = up_is_less ? YAxis::up : YAxis::down;
     mixed.clear = votes.up.size() + votes.down.size();
     mixed.regions = std::move(up_is_less ? votes.up : votes.down);
+    mixed.streaks = std::move(streaks);
     return mixed;
 }
 

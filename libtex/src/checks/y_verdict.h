@@ -22,6 +22,7 @@ struct MixedY {
     YAxis y = YAxis::up;          // the direction of fewer regions,
     std::vector<Region> regions;  // which are these
     std::size_t clear = 0;        // the number of regions that show a direction
+    std::vector<Region> streaks;  // regions that have no say: padding
 
     [[nodiscard]] double share() const { return static_cast<double>(regions.size()) / static_cast<double>(clear); }
     [[nodiscard]] std::string text() const;  // "24 of 155 regions point down, the others up"

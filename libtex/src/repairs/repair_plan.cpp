@@ -99,7 +99,7 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
     RepairStep step{finding.rule, row.kind, row.certainty};
     const int x = channel_of(report.swizzle, Component::x), y = channel_of(report.swizzle, Component::y);
     const int z = channel_of(report.swizzle, Component::z);
-    if (x < 0 || y < 0) return {};
+    if (x < 0 || y < 0 || !finding.fix_harms.empty()) return {};
     const bool by_heights = report.pair && report.pair->decides();
     switch (row.kind) {
         case exchange: return exchanges(step, finding, report, y_is_known);
