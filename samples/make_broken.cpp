@@ -282,7 +282,10 @@ void Maker::damages() {
     png("N312-scaled-up", enlarged);
     Codes darkened = whole_codes;
     for (int k = 0; k < 128 * 128; ++k) {
-        for (int c = 0; c < 3; ++c) darkened.at(k % 128, k / 128, c) = whole_codes.at(k % 128, k / 128, c) * 3 / 5;
+        for (int c = 0; c < 3; ++c) {
+            unsigned char& code = darkened.at(k % 128, k / 128, c);
+            code = static_cast<unsigned char>(code * 3 / 5);
+        }
     }
     png("N313-darkened", darkened);
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));

@@ -160,6 +160,15 @@ TEST_F(OnTheGround, WhatIsNotKnownIsSaidAndNothingIsScaled) {
 }
 
 // A world file beside a picture of fractions of a range means nothing for their slopes.
+// Tiles of the web state no place.
+TEST_F(OnTheGround, MetresInColoursNeedAWidth) {
+    scratch_.add_sample("report.png", "tile.png");
+    const std::string bake = "bake-normals tile.png -o n.png --channel terrarium";
+    const std::string assumed = "nothing says how wide a texel is: 1 m is assumed; --world-size";
+    EXPECT_NE(shell(scratch_, bake).err.find(assumed), std::string::npos);
+    EXPECT_EQ(shell(scratch_, bake + " --world-size 40000").err.find(assumed), std::string::npos);
+}
+
 TEST_F(OnTheGround, FractionsOfARangeHaveNoUnit) {
     fs::copy_file(TEX_SOURCE_DIR "/samples/waves.png", scratch_.path("w.png"));
     const std::string plain = baked({"w.png"});

@@ -38,7 +38,7 @@ void look_at_maps(std::span<const std::byte> bytes, const tex::LoadBeside& load)
     const auto maps = tex::gltf_maps(document->root());
     if (!maps) return;
     tex::GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
-    const auto images = tex::gltf_images(document->root(), buffers, *maps);
+    const auto images = tex::gltf_images(document->root(), buffers, *maps, true);
     const std::size_t materials = document->root()["materials"].size();
     for (const tex::ModelMap& map : *maps) {
         expect(map.material >= 0 && static_cast<std::size_t>(map.material) < materials);
@@ -61,7 +61,7 @@ void put_pictures(std::span<const std::byte> bytes, const tex::LoadBeside& load)
         auto maps = tex::gltf_maps(document->root());
         if (!maps) return none;
         tex::GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
-        if (images != nullptr) *images = tex::gltf_images(document->root(), buffers, *maps);
+        if (images != nullptr) *images = tex::gltf_images(document->root(), buffers, *maps, true);
         return *maps;
     };
     const auto maps = maps_in(bytes, nullptr);

@@ -118,6 +118,19 @@ TEST(Verdicts, VectorsThatAreAllTooShortHoldNoZFromZero) {
     EXPECT_FALSE(found.contains("N221"));
 }
 
+// An opacity that was flattened on black: the curve of sRGB would be undone by 8 degrees too much.
+TEST(Verdicts, ADarkenedMapDidNotGoThroughTheCurve) {
+    for (const int percent : {46, 50, 60, 80, 90}) {
+        const auto darkened = [percent](int i, int j) {
+            std::array<int, 4> c = wave(i, j);
+            for (std::size_t k = 0; k < 3; ++k) c[k] = c[k] * percent / 100;
+            return c;
+        };
+        const Ids found = ids(picture(128, 3, darkened), Severity::error);
+        EXPECT_TRUE(found == Ids{"N313"} || found == Ids{"N214"}) << percent << testing::PrintToString(found);
+    }
+}
+
 // What contrast and sharpening do: averages never make vectors longer.
 TEST(Verdicts, VectorsThatAreTooLongNameTheirCause) {
     const auto says = [](int percent) {

@@ -42,8 +42,12 @@ Json step_json(const RepairStep& step) {
 std::string repairs_text(const std::string& name, const Repaired& repaired) {
     std::string text;
     for (const RepairStep& step : repaired.steps) {
-        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees\n", printable(name), step.rule->id, step.rule->name,
-                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees);
+        // Slopes alone do not tell which of green and red is mirrored; heights do, and then the repair is safe.
+        const bool is_doubtful =
+            step.certainty == RepairClass::likely && (step.rule->id == "N401" || step.rule->id == "N404");
+        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees{}\n", printable(name), step.rule->id, step.rule->name,
+                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees,
+                            is_doubtful ? "; wrong if red is mirrored instead, which --height FILE would show" : "");
     }
     for (const FaultLeft& fault : repaired.left) {
         const Finding& finding = fault.finding;

@@ -30,11 +30,10 @@ constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
 constexpr double kJpegLead = 1.05;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
-constexpr double kDarkestSoundCentre = 0.47;  // of x and y
-constexpr double kLeastCentre = 0.1;          // below, too little is left to tell
-constexpr double kEqualCentres = 0.03;
+constexpr double kOffCentre = 0.03;
+constexpr double kLeastDarkened = 0.94;      // nearer to 1, flat maps with short vectors look alike
 constexpr double kUnitAfterDivision = 0.05;  // the mean error of the lengths
-constexpr int kLeastTurnedSide = 64;          // smaller maps, as pixel art, seem exchanged by chance
+constexpr int kLeastTurnedSide = 64;         // smaller maps, as pixel art, seem exchanged by chance
 constexpr int kLatticeTeeth = 6;
 constexpr double kLatticeUneven = 0.25;
 constexpr double kAboveAlphaShare = 0.002;
@@ -43,27 +42,58 @@ constexpr double kHalfAlphaShare = 0.01;
 constexpr double kExchangedMean = 0.4;
 constexpr double kExchangedZ = 0.2;
 
-// The mean of |length - 1| over every 7th sampled texel, after `restore` is applied to the stored values of x, y and z.
-template <class Restore>
-double length_error(const Stored& stored, Restore&& restore) {
+// The channel of z, or blue where no channel was taken for z, because its values do not fit as they are stored.
+int channel_like_z(const Stored& stored) {
+    if (stored.has_z()) return stored.channel(Component::z);
+    const bool is_free = stored.channel(Component::x) == 0 && stored.channel(Component::y) == 1;
+    return is_free && stored.image->planes.size() >= 3 ? 2 : -1;
+}
+
+// Calls `visit` with the stored values of x, y and z of every 7th sampled texel, and its column and row.
+template <class Visit>
+void visit_samples(const Stored& stored, Visit&& visit) {
     constexpr int kStep = 7;
-    const int channels[3] = {stored.channel(Component::x), stored.channel(Component::y), stored.channel(Component::z)};
-    double sum = 0.0, count = 0.0;
+    const int channels[3] = {stored.channel(Component::x), stored.channel(Component::y), channel_like_z(stored)};
     for (const Rect& window : sample_windows(stored.extent())) {
         for (int k = 0; k < window.width * window.height; k += kStep) {
             const int i = window.x + k % window.width, j = window.y + k / window.width;
-            double square = 0.0;
-            for (const int channel : channels) {
-                const double c = stored.image->planes[static_cast<std::size_t>(channel)].at(i, j);
-                const double n = 2.0 * restore(c, i, j) - 1.0;
-                square += n * n;
-            }
-            if (!(square < 100.0)) continue;
-            sum += std::abs(std::sqrt(square) - 1.0);
-            count += 1.0;
+            double c[3];
+            for (std::size_t n = 0; n < 3; ++n)
+                c[n] = stored.image->planes[static_cast<std::size_t>(channels[n])].at(i, j);
+            visit(c, i, j);
         }
     }
+}
+
+// The mean of |length - 1| over these texels, after `restore` is applied to the values.
+template <class Restore>
+double length_error(const Stored& stored, Restore&& restore) {
+    double sum = 0.0, count = 0.0;
+    visit_samples(stored, [&](const double(&c)[3], int i, int j) {
+        double square = 0.0;
+        for (const double value : c) {
+            const double n = 2.0 * restore(value, i, j) - 1.0;
+            square += n * n;
+        }
+        if (!(square < 100.0)) return;
+        sum += std::abs(std::sqrt(square) - 1.0);
+        count += 1.0;
+    });
     return count > 0.0 ? sum / count : 0.0;
+}
+
+// The number by which most vectors are unit vectors if their values are divided by it: |2 c / f - 1| = 1.
+double unit_factor(const Stored& stored) {
+    std::vector<double> factors;
+    visit_samples(stored, [&](const double(&c)[3], int, int) {
+        const double sum = c[0] + c[1] + c[2], squares = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        const double root = sum * sum - 2.0 * squares;
+        if (root >= 0.0 && sum > 0.0) factors.push_back(2.0 * squares / (sum + std::sqrt(root)));
+    });
+    if (factors.empty()) return 1.0;
+    const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
+    std::nth_element(factors.begin(), middle, factors.end());
+    return *middle;
 }
 
 // What takes long to measure. A member has its default value if no rule asks for it.
@@ -100,22 +130,24 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
 }
 
-// All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then x and y
-// centre on the same value below 0.5, and dividing by it makes the vectors unit vectors. The curve of sRGB, which moves
-// the centre down as well, leaves 1 where it is. Returns whether it was found.
+// All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then dividing
+// by it makes the vectors unit vectors, and x and y centre on half of it, not on the middle, on which those of maps
+// with short vectors do. The curve of sRGB moves the centre as well, but leaves 1 where it is. Returns whether it was
+// found.
 bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
-    const double middle = (centre.x + centre.y) / 2.0;
-    if (!context.stored.has_z() || middle > kDarkestSoundCentre || middle < kLeastCentre) return false;
-    if (std::abs(centre.x - centre.y) > kEqualCentres) return false;
+    if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
+    const double factor = unit_factor(context.stored);
+    if (factor > kLeastDarkened || centre.distance(factor / 2.0) > centre.distance(0.5) / 2.0) return false;
     const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
     const double decoded =
         length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
-    const double divided = length_error(context.stored, [&](double c, int, int) { return c * 0.5 / middle; });
+    const double divided = length_error(context.stored, [&](double c, int, int) { return c / factor; });
     if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
-    Finding& finding = findings.add("N313", "x and y centre on " + decimal(255.0 * middle, 0) +
-                                                " of 255 instead of 128: all channels are multiplied by about " +
-                                                decimal(2.0 * middle, 2));
-    finding.figure = 2.0 * middle;
+    Finding& finding =
+        findings.add("N313", "vectors are unit vectors if all channels are divided by " + decimal(factor, 2) +
+                                 "; x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
+                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    finding.figure = factor;
     finding.unit = "ratio";
     finding.confidence = 0.99;
     return true;
