@@ -275,27 +275,17 @@ void Maker::damages() {
     png("N303-premultiplied", with_alpha(codes(), true));
     png("N304-jpeg-blocks", jpeg(codes(), 30));
     const Codes whole_codes = codes();
-    Codes enlarged = whole_codes;  // each texel of a quarter four times
-    for (int k = 0; k < 128 * 128; ++k) {
-        for (int c = 0; c < 3; ++c) enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);
-    }
-    png("N312-scaled-up", enlarged);
-    Codes darkened = whole_codes;
+    Codes enlarged = whole_codes, blocks = whole_codes, darkened = whole_codes;
     for (int k = 0; k < 128 * 128; ++k) {
         for (int c = 0; c < 3; ++c) {
-            unsigned char& code = darkened.at(k % 128, k / 128, c);
-            code = static_cast<unsigned char>(code * 3 / 5);
+            enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);  // each four times
+            blocks.at(k % 128, k / 128, c) = whole_codes.at(k % 128, k / 512 * 4, c);    // four in 4x4
         }
     }
+    for (unsigned char& code : darkened.values) code = static_cast<unsigned char>(code * 3 / 5);
+    png("N312-scaled-up", enlarged);
     png("N313-darkened", darkened);
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
-    const Codes whole = codes();
-    Codes blocks = whole;  // four colours in each block of 4x4: those of its first row
-    for (int j = 0; j < 128; ++j) {
-        for (int i = 0; i < 128; ++i) {
-            for (int c = 0; c < 3; ++c) blocks.at(i, j, c) = whole.at(i, j / 4 * 4, c);
-        }
-    }
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));
     png("N308-channels-exchanged", exchange(codes(), 0, 2));
@@ -458,8 +448,8 @@ void Maker::model(const std::string& name, const MeshPart& part, const BrokenMat
 
 void Maker::models() {
     const std::vector<std::byte> image = encoded(texture_of(codes_of(part(64, 64))), Container::png);
-    const auto put = [&](const std::string& name, const MeshPart& on, const std::string& material) {
-        model(name, on, {material, R"("source":0)", image, "image/png"});
+    const auto put = [&](const std::string& name, const MeshPart& on, const std::string& json, const char* uses = "") {
+        model(name, on, {json, R"("source":0)", image, "image/png", uses});
     };
     const MeshPart sheet = broken_sheet();
     const std::string normal = R"("name":"stone","normalTexture":{"index":0})";
@@ -472,15 +462,12 @@ void Maker::models() {
     put("N805-double-sided-tangents", two_sheets(true), normal + R"(,"doubleSided":true)");
     put("N806-data-in-normal-slot", sheet, normal + R"(,"occlusionTexture":{"index":0})");
     MeshPart bare = sheet;
-    bare.normals.clear();
     bare.tangents.clear();
+    put("N808-drawn-wrongly-by-engine", bare,
+        R"("normalTexture":{"index":0,"extensions":{"KHR_texture_transform":{"rotation":1}}})",
+        "KHR_texture_transform");
+    bare.normals.clear();
     put("N807-mesh-not-examined", bare, normal);
-    MeshPart plain = sheet;
-    plain.tangents.clear();
-    const std::string turned = R"("extensions":{"KHR_texture_transform":{"rotation":1.5707963}})";
-    model("N808-drawn-wrongly-by-engine", plain,
-          {R"("name":"stone","normalTexture":{"index":0,)" + turned + "}", R"("source":0)", image, "image/png",
-           "KHR_texture_transform"});
 }
 
 }  // namespace

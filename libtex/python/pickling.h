@@ -280,6 +280,14 @@ void each_part(SelectedPart& o, F& f) {
     f(o.remarks);
 }
 
+template <class F>
+void each_part(Marks& o, F& f) {
+    f(o.extent);
+    f(o.side);
+    f(o.squares);
+    f(o.texels);
+}
+
 // A rule is its id, and a unit a word of the rule table's kind: both outlive the findings.
 template <class F>
 void each_part(Finding& o, F& f) {
@@ -299,6 +307,8 @@ void each_part(Finding& o, F& f) {
     f(o.has_texel);
     f(o.column);
     f(o.row);
+    f(o.fix_harms);
+    f(o.marks);
 }
 
 template <class F>

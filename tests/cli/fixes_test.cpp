@@ -143,6 +143,7 @@ TEST_F(Fixes, RepairEveryBrokenSample) {
         if (!name.starts_with("N")) continue;
         const std::string id = name.substr(0, 4);
         const auto found = finding(check(name, options[id]), id);
+        if (id == "N808") continue;  // ConvertedModels runs its fix
         // Exchanged channels have a command if it is z that changed places.
         if (find_rule(id)->fix.find("-normals FILE") == std::string_view::npos && id != "N308") {
             EXPECT_FALSE(found.contains("fix")) << found;

@@ -55,7 +55,7 @@ no_python='/^lib\/python\//d'
 no_oiio='/^lib\/OpenImageIO\//d; /tex-oiio/d'
 # shellcheck disable=SC2016  # sed's last line
 static_files='/^lib\/libtex\.so/d; $a lib/libtex.a'
-library_files=$no_python'; '$no_oiio'; /^bin\//d; /^libexec\//d; /^share\/doc\//!{/^share\//d}'
+library_files=$no_python'; '$no_oiio'; /^bin\//d; /^libexec\//d; /\/samples\//d; /^share\/doc\//!{/^share\//d}'
 
 # Compiles no object of libtex again: BUILD has them. Whether folders are compiled as one source decides their names.
 unity=$(sed -n 's/^CMAKE_UNITY_BUILD:[A-Z]*=//p' "$build/CMakeCache.txt")

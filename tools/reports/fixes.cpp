@@ -329,7 +329,7 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
 std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report) {
     const std::string_view id = finding.rule->id;
     const std::string type = report.map.empty() ? "" : type_of_model(report);
-    // Of what engines draw wrongly (N808), tangents mend what comes from their absence.
+    // Tangents mend what engines draw wrongly because there are none.
     const bool lacks_tangents = id == "N808" && finding.message.find("no TANGENT") != std::string::npos;
     if (type.empty() || !(lacks_tangents || is_any_of(id, {"N701", "N702", "N703", "N704", "N705", "N706"})))
         return std::nullopt;

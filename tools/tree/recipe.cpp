@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 constexpr const char* kSuffix = "-normals";
 constexpr const char* kModel = "a model";
 constexpr const char* kOutputGroup = "Output";
+constexpr const char* kLevelsGroup = "Mip chain";
 constexpr const char* kDataGroup = "Data beside the normals";
 
 Converter* converter_of(Program& program) {
@@ -241,7 +242,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     }
     if (output != nullptr) {
         for (const OptionSetting& setting : output->settings)
-            add_option(setting, table, {kOutputGroup, kDataGroup}, command.arguments);
+            add_option(setting, table, {kOutputGroup, kDataGroup, kLevelsGroup}, command.arguments);
     }
     std::sort(command.arguments.begin(), command.arguments.end(),
               [](const std::string& a, const std::string& b) { return cut(a, '=').first < cut(b, '=').first; });

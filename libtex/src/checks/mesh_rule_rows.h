@@ -15,8 +15,8 @@ inline constexpr Rule kMeshRules[] = {
     // -- the mesh ---------------------------------------------------------------------------------------------
     {"N701", "tangents-missing", mesh, note, true, "The mesh has a normal map, but no tangents.",
      "Each engine then makes its own tangents, and not all by MikkTSpace's method, as glTF asks. Cesium and filament "
-     "light mirrored UVs, transforms or texCoord 1 from the wrong side then: normal-maps-engines(7) has a table. Models "
-     "without any of these are not reported.",
+     "light mirrored UVs, transforms or texCoord 1 from the wrong side then: normal-maps-engines(7) has a table. "
+     "Models without any of these are not reported.",
      "Export the mesh with tangents, or make sure that the engine makes those that the map was baked with.", ""},
     {"N702", "tangents-not-unit", mesh, warning, true, "Tangents are not of unit length.",
      "A tangent of length zero has no direction, so its triangles are lit wrongly. Other lengths make bumps steeper or "

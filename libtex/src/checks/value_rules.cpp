@@ -42,7 +42,7 @@ void check_lengths(const CheckContext& context, Findings& findings) {
                             ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
                             decimal(static_cast<double>(counts.max_length), 2) + ")");
         if (is_stretched)
-            finding.message += "; lengths above 1 are what contrast, levels and sharpening leave, which turn vectors too";
+            finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
     }
     if (counts.share(Property::z_below) > kBelowShare)
         add_counted(context, findings, "N202", Property::z_below, " have z below zero");

@@ -202,12 +202,8 @@ struct UnreadType {
 };
 
 constexpr UnreadType kUnreadTypes[] = {
-    {"AVIF", 4, "ftypavif", "avifdec"},
-    {"AVIF", 4, "ftypavis", "avifdec"},
-    {"HEIF", 4, "ftyphei", "heif-convert"},
-    {"HEIF", 4, "ftypmif1", "heif-convert"},
-    {"JPEG XL", 4, "JXL \r\n", "djxl"},
-    {"JPEG XL", 0, "\xff\x0a", "djxl"},
+    {"AVIF", 4, "ftypavif", "avifdec"},      {"AVIF", 4, "ftypavis", "avifdec"}, {"HEIF", 4, "ftyphei", "heif-convert"},
+    {"HEIF", 4, "ftypmif1", "heif-convert"}, {"JPEG XL", 4, "JXL \r\n", "djxl"}, {"JPEG XL", 0, "\xff\x0a", "djxl"},
 };
 
 Error unknown_type(const InputFile& file) {
