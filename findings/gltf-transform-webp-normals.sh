@@ -5,8 +5,8 @@
 #
 # Expected: the slot of a normal map is left out, or kept without loss; else WebP loses about as much as JPEG, because
 # both are lossy and halve the resolution of colour, and AVIF less.
-# Seen (2026-11-29): the slot is not looked at. WebP turns the vectors by 7.3 degrees in the mean, JPEG by 3.2, and AVIF,
-# for which sharp keeps the full resolution of colour, by 4.1 in a sixth of the bytes.
+# Seen (2026-11-29): the slot is not looked at. WebP turns the vectors by 7.3 degrees in the mean, JPEG by 3.2, and
+# AVIF, for which sharp keeps the full resolution of colour, by 4.1 in a sixth of the bytes.
 # For a normal map: textureCompress({slots: /^(?!normal)/}) for the others, and WebP without loss for this one, which
 # has two thirds of the bytes of the PNG.
 set -euo pipefail

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # three-mirrored-tangents.sh: a normal map that leans up (green up) on a plane of three.js 0.187.0 with an attribute
-# `tangent`, whose object is as it is, or mirrored by scale.x = -1, lit from above and from below. The same plane without
-# that attribute beside it. Chromium of Debian 12 draws them, with SwiftShader.
+# `tangent`, whose object is as it is, or mirrored by scale.x = -1, lit from above and from below. The same plane
+# without that attribute beside it. Chromium of Debian 12 draws them, with SwiftShader.
 #
-# Expected: light from above stays the brighter one, with the attribute and without: w of tangents says on which side the
-# bitangent lies, and the mirroring of the object turns that round once more.
+# Expected: light from above stays the brighter one, with the attribute and without: w of tangents says on which side
+# the bitangent lies, and the mirroring of the object turns that round once more.
 # Seen (2026-11-29): on the mirrored object with the attribute, light from below is the brighter one. Without it, where
 # the shader derives tangents from the picture, nothing changes.
 # For a normal map: on mirrored copies of a model (arms, wheels) that was exported with tangents, bumps are lit as dents
@@ -26,7 +26,7 @@ map.needsUpdate = true;
 function code(hasTangents, scale, y) {
   const geometry = new THREE.PlaneGeometry(2, 2);
   if (hasTangents)
-    geometry.setAttribute("tangent", new THREE.Float32BufferAttribute([1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1], 4));
+    geometry.setAttribute("tangent", new THREE.Float32BufferAttribute(Array(4).fill([1, 0, 0, 1]).flat(), 4));
   const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({color: 0x999999, normalMap: map}));
   mesh.scale.x = scale;
   const light = new THREE.DirectionalLight(0xffffff, 3);
