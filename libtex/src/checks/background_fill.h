@@ -26,8 +26,8 @@ struct FillHarm {
 
 // Gives the background the normals of the nearest other texels, as --fill-background does, in memory. A texel beside
 // the background is a mixture, and ought to change, if its direction lies between the background's value and a normal
-// near it; and it is noise if no two of its neighbours point nearly where it points. Any other has a normal of its own:
-// a bevel at the border, whose length some tool changed. Errors: out_of_memory, cancelled.
+// near it; and it is noise if fewer than two of its neighbours have nearly its direction. All others hold normals that
+// the fix would destroy: bevels at the border, whose lengths some tool changed. Errors: out_of_memory, cancelled.
 Result<FillHarm> harm_of_filling(const Stored& stored, const Background& background, const Execution& execution);
 
 }  // namespace tex::inline v1

@@ -19,7 +19,7 @@ namespace tex::inline v1 {
 // The slot in the text of its material, or null if that lacks it.
 JsonNode* slot_node(JsonNode& material, const GltfSlot& slot);
 
-// Gives a material a slot of its own, such as normalTexture, with this texture.
+// Adds a slot that the material lacks, such as normalTexture, with this texture.
 JsonNode* add_slot(JsonNode& material, const std::string& name, std::int64_t texture);
 
 // Gives the slot, which is described as `slot`, the scale, the set of UVs and the transform of the map.
