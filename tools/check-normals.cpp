@@ -173,7 +173,10 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
 }
 
 Result<cli::Json> CheckNormals::classify(cli::Job& job, CheckReport& report) {
-    if (report.error) job.raise(cli::exit_code(report.error->code));
+    if (report.error) {
+        job.console.error(report.error->message());
+        job.raise(cli::exit_code(report.error->code));
+    }
     report.findings.clear();
     job.say(cli::kind_text(report));
     const std::lock_guard lock(mutex_);

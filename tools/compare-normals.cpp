@@ -14,6 +14,7 @@
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/curve.h"
+#include "options/map_pairs.h"
 #include "options/pair.h"
 #include "options/run.h"
 #include "options/tangent_space.h"
@@ -32,9 +33,11 @@ public:
 private:
     [[nodiscard]] std::vector<std::string> sources() const;
     [[nodiscard]] Result<cli::ExitCode> compare_files(cli::Console& console);
+    [[nodiscard]] Result<cli::ExitCode> compare_pair(cli::Console& console, const cli::MapPair& pair,
+                                                     const cli::MeshSpace* mesh);
     [[nodiscard]] Result<cli::ExitCode> draw_curve(cli::Console& console);
-    [[nodiscard]] Result<void> write_page(cli::Console& console, const std::vector<cli::ComparedLevel>& levels,
-                                          const Plane<float>& degrees);
+    [[nodiscard]] Result<void> write_page(cli::Console& console, const cli::MapPair& pair,
+                                          const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees);
 
     cli::PairOptions pair_;
     cli::TangentSpaceOptions mesh_;
@@ -47,7 +50,7 @@ private:
 CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.usage("A B");
     command.usage("A --rdo-means LIST");
-    command.input("A B", "two textures or pictures; - is standard input");
+    command.input("A B", "two textures, pictures or glTF models with their maps; - is standard input");
     command.finds_things();
     pair_.add(command);
     mesh_.add_charts(command);
@@ -71,6 +74,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
                     "A page with both maps under a light that can be moved.");
     command.example("compare-normals mine.png theirs.png --mesh rock.glb",
                     "Two bakes, without what is between the charts.");
+    command.example("compare-normals rock.glb small.glb", "The maps of two models, by their materials.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
     command.example("compare-normals bricks.exr --rdo-means 0,0.1,0.3,1 --plot curve.svg",
                     "What --rdo-mean saves in bytes, and costs in degrees.");
@@ -94,7 +98,13 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
 
 // Everything that is read.
 std::vector<std::string> CompareNormals::sources() const {
-    std::vector<std::string> names = command.inputs();
+    std::vector<std::string> names;
+    for (const std::string& input : command.inputs()) {
+        names.push_back(input);
+        for (std::string& beside : cli::files_beside_model(input, {running_.read})) {
+            if (!beside.empty()) names.push_back(std::move(beside));
+        }
+    }
     if (!mesh_.has_mesh()) return names;
     for (std::string& name : mesh_.files()) names.push_back(std::move(name));
     return names;
@@ -102,11 +112,21 @@ std::vector<std::string> CompareNormals::sources() const {
 
 Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
-    const auto a = pair_.read_levels(names[0], 0, running_.read, console, running_.step(console, 0.0, 0.3, names[0]));
-    if (!a) return a.error();
-    const auto b = pair_.read_levels(names[1], 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
-    if (!b) return b.error();
-    pair_.warn_of_doubts(names, console);
+    if (mesh_.has_mesh()) {
+        for (const std::string& name : names) {
+            if (is_model(name))
+                return Error{ErrorCode::bad_option, name, "a model, and --mesh is for maps without their mesh"};
+        }
+    }
+    const auto pairs = cli::map_pairs(
+        names, mesh_.has_mesh() ? "" : mesh_.material(), running_.read,
+        [&](const std::string& file, const std::string& sentence) { pair_.warn(console, file, sentence); });
+    if (!pairs) return pairs.error();
+    if (pairs->size() > 1 && documents_.has_any()) {
+        return Error{ErrorCode::bad_option, names[0],
+                     fmt::format("{} maps are compared, and --heatmap and --report show two: give --material",
+                                 2 * pairs->size())};
+    }
     std::optional<cli::MeshSpace> mesh;
     if (mesh_.has_mesh()) {
         auto read = mesh_.charts(running_.read, {running_.threads, {}});
@@ -114,6 +134,25 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
         mesh = std::move(*read);
         for (const std::string& remark : mesh->selected().remarks) pair_.warn(console, mesh->file(), remark);
     }
+    cli::ExitCode code = cli::ExitCode::done;
+    for (const cli::MapPair& pair : *pairs) {
+        run_.material = pair.material;
+        const auto compared = compare_pair(console, pair, mesh ? &*mesh : nullptr);
+        if (!compared) return compared.error();
+        code = std::max(code, *compared);
+    }
+    return code;
+}
+
+Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const cli::MapPair& pair,
+                                                   const cli::MeshSpace* mesh) {
+    const std::vector<std::string> names = pair.names();
+    const auto& [map_a, map_b] = pair.maps;
+    const auto a = pair_.read_levels(map_a, 0, running_.read, console, running_.step(console, 0.0, 0.3, names[0]));
+    if (!a) return a.error();
+    const auto b = pair_.read_levels(map_b, 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
+    if (!b) return b.error();
+    pair_.warn_of_doubts(names, console);
     const auto [first, end] = pair_.levels(*a, *b, names, console);
     cli::ExitCode code = cli::ExitCode::done, printed = code;
     std::vector<cli::ComparedLevel> levels;
@@ -122,13 +161,14 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
     for (std::size_t k = first; k < end; ++k) {
         if (auto fits = cli::PairOptions::check_level(k, *a, *b, names); !fits) return fits.error();
         const Execution shown = running_.step(console, k == first ? 0.6 : until, until, fmt::format("level {}", k));
-        auto comparison = mesh ? compare(a->levels[k], b->levels[k], mesh->selected().part, 0, shown)
-                               : compare(a->levels[k], b->levels[k], shown);
-        if (!comparison) return comparison.error().of(mesh ? mesh->file() : names[0]);
+        auto comparison = mesh != nullptr ? compare(a->levels[k], b->levels[k], mesh->selected().part, 0, shown)
+                                          : compare(a->levels[k], b->levels[k], shown);
+        if (!comparison) return comparison.error().of(mesh != nullptr ? mesh->file() : names[0]);
         cli::ComparedLevel level{static_cast<int>(k), a->levels[k].extent(), comparison->error};
         if (printed == cli::ExitCode::done) printed = cli::print_level(console, run_, level, running_.json, k == first);
         const std::vector<std::string> violations = pair_.violations(level.number, level.error);
-        for (const std::string& sentence : violations) console.error(sentence);
+        for (const std::string& sentence : violations)
+            console.error(pair.material.empty() ? sentence : fmt::format("{}: {}", names[0], sentence));
         level.within = violations.empty();
         code = std::max({code, level.within ? cli::ExitCode::done : cli::ExitCode::findings, printed});
         levels.push_back(level);
@@ -137,13 +177,13 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
         degrees = std::move(comparison->degrees);
     }
     if (!documents_.has_page()) return code;
-    if (auto written = write_page(console, levels, degrees); !written) return written.error();
+    if (auto written = write_page(console, pair, levels, degrees); !written) return written.error();
     return code;
 }
 
 Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
     const std::string& name = command.inputs().front();
-    auto map = pair_.read_levels(name, 0, running_.read, console, running_.step(console, 0.0, 0.1, name));
+    auto map = pair_.read_levels({name}, 0, running_.read, console, running_.step(console, 0.0, 0.1, name));
     if (!map) return map.error();
     map->levels.resize(1);
     const std::vector<PackOptions> settings = curve_.settings();
@@ -165,13 +205,14 @@ Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
     return code;
 }
 
-Result<void> CompareNormals::write_page(cli::Console& console, const std::vector<cli::ComparedLevel>& levels,
-                                        const Plane<float>& degrees) {
+Result<void> CompareNormals::write_page(cli::Console& console, const cli::MapPair& pair,
+                                        const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) {
     std::vector<cli::HtmlMap> maps;
     for (int k = 0; k < 2; ++k) {
-        const std::string& name = command.inputs()[static_cast<std::size_t>(k)];
+        const cli::ComparedMap& compared = pair.maps[k];
+        const std::string name = compared.name();
         const Execution shown = running_.step(console, 0.8 + 0.1 * k, 0.9 + 0.1 * k, name);
-        const auto texture = pair_.read(name, k, running_.read, console, shown);
+        const auto texture = pair_.read(compared, k, running_.read, console, shown);
         if (!texture) return texture.error();
         auto map =
             cli::draw_html_map(name, *texture, texture->swizzle, texture->y_axis, nullptr, cli::html_sizes(1), shown);

@@ -77,6 +77,9 @@ TEST_F(CompareNormals, LimitsFailWithTheReason) {
     EXPECT_NE(over.err.find("mean"), std::string::npos);
     EXPECT_NE(over.err.find("limit of 0.001"), std::string::npos);
     EXPECT_EQ(lines_of(over.err).size(), 1u);
+    const Ran rarely = compare({"up.exr", "waves.dds", "--max-p99", "0.001"});
+    EXPECT_EQ(rarely.code, 1);
+    EXPECT_NE(rarely.err.find("level 0: p99 "), std::string::npos) << rarely.err;
 }
 
 TEST_F(CompareNormals, EveryLevelHasALine) {
@@ -198,7 +201,7 @@ TEST_F(CompareNormals, PaddingDoesNotCountOnAMesh) {
     EXPECT_EQ(page.code, 0) << page.err;
     EXPECT_NE(scratch_.read("d").find("half.obj"), std::string::npos);
     for (const auto& [arguments, said] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-             {{"a.png", "b.png", "--material", "x"}, "--material needs --mesh"},
+             {{"a.png", "b.png", "--material", "x"}, "--material needs --mesh, or a model"},
              {{"a.png", "b.png", "--uv-set", "0"}, "--uv-set needs --mesh"},
              {{"a.png", "b.png", "--mesh", "half.obj", "--heatmap", "half.obj"}, "is the input"},
              {{"a.png", "--rdo-means", "0", "--mesh", "half.obj"}, "--mesh and --rdo-means contradict each other"}}) {

@@ -239,6 +239,7 @@ TEST_F(Extras, WhatCannotBeIsOneError) {
     refuses("pack-normals n.png -o x.png --format rgba8 --alpha none.png", 3, "none.png");
     refuses("pack-normals n.png -o h.png --format rgba8 --alpha h.png", 2, "h.png");
     refuses("unpack-normals n.png -o x.png --alpha-out y.png", 4, "has no alpha beside the normals");
+    refuses("unpack-normals n.png -o x.png --blue-out y.png", 4, "blue is read as z; --swizzle rg or labpbr reads it");
     refuses("unpack-normals n.png -o x.png --alpha-out n.png", 2, "n.png");
     refuses("pack-normals n.png -o x.png --length occlusion", 2, "--length occlusion needs --length-in occlusion");
     refuses("pack-normals n.png -o x.png --blue ao.png --length 0.5", 2, "--blue and --length exclude each other");

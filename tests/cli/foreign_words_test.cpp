@@ -166,6 +166,10 @@ TEST(ForeignWords, AreAnswered) {
     says({"a.png", "-o", "a.ktx2", "--format", "etc1s"},
          "; etc1s is not written: make n.png, then run basisu -ktx2 -normal_map n.png\n");
     says({"a.png", "-o", "a.png", "--for", "ue5"}, "; here it is unreal\n");
+    says({"a.png", "-o", "a.png", "--for", "LabPBR"}, "; LabPBR is a layout of channels: ");
+    says({"a.png", "-o", "a.png", "--for", "skyrim"}, "; that is a layout of channels: pack-normals --layout skyrim");
+    says({"a.png", "-o", "a.webp", "--format", "webp"},
+         "; webp is a file type: the name of the output ends in .webp, or --container webp\n");
     says({"a.png", "-o", "a.dds", "--quality", "90"}, "of blocks, it is --effort");
     for (const char* same : {"bc3n", "bc3nm", "3DC", "ATI2"})
         EXPECT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.dds", "--format", same}).code, 0) << same;

@@ -103,6 +103,7 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
     const Ran broken = shell(scratch_, "check-normals --classify no.png art/wall_n.png");
     EXPECT_EQ(broken.code, 4);
     EXPECT_NE(broken.out.find("unknown       -        -     -     no.png: "), std::string::npos) << broken.out;
+    EXPECT_NE(broken.err.find("error: no.png: "), std::string::npos) << broken.err;
     EXPECT_EQ(shell(scratch_, "check-normals --classify art/wall_n.png --report r.html").code, 2);
 }
 

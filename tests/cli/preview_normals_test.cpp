@@ -85,6 +85,21 @@ TEST_F(PreviewNormals, PutsMapsInRowsOfASheet) {
     EXPECT_EQ(extent_of("bare.png"), (Extent{50 + 16, 2 * 50 + 24}));
 }
 
+// Files of one name in the folders of two engines.
+TEST_F(PreviewNormals, CaptionsTellFilesOfOneNameApart) {
+    for (const char* folder : {"unity", "unreal"}) {
+        std::filesystem::create_directory(scratch_.path(folder));
+        std::filesystem::copy_file(scratch_.path("bricks.dds"), scratch_.path(std::string(folder) + "/bricks.dds"));
+    }
+    const std::string a = "unity/bricks.dds", b = "unreal/bricks.dds";
+    ASSERT_EQ(preview({a, b, "-o", "ab.png", "--size", "100"}).code, 0);
+    ASSERT_EQ(preview({b, a, "-o", "ba.png", "--size", "100"}).code, 0);
+    EXPECT_NE(scratch_.read("ab.png"), scratch_.read("ba.png"));
+    ASSERT_EQ(preview({a, b, "-o", "ab.png", "--size", "100", "--no-captions"}).code, 0);
+    ASSERT_EQ(preview({b, a, "-o", "ba.png", "--size", "100", "--no-captions"}).code, 0);
+    EXPECT_EQ(scratch_.read("ab.png"), scratch_.read("ba.png"));
+}
+
 TEST_F(PreviewNormals, ASheetDoesWithoutADamagedMap) {
     scratch_.write("cut.dds", scratch_.read("bricks.dds").substr(0, 3000));
     const Ran ran = preview({"bricks.dds", "cut.dds", "none.png", "small.png.dds", "-o", "sheet.png", "--show",

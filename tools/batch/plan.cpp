@@ -135,10 +135,8 @@ std::vector<Input> with_materials(const std::vector<Input>& inputs, const Output
 }
 
 // Throws UsageError if the outputs for several engines cannot be made in one run.
-void check_engines(const std::vector<Task>& tasks, const FileOptions& files, std::size_t engines) {
+void check_engines(const std::vector<Task>& tasks, std::size_t engines) {
     if (engines < 2) return;
-    if (!files.output.empty())
-        throw UsageError(fmt::format("-o takes one engine of --for, {} are given; --out-dir takes many", engines));
     for (const Task& task : tasks) {
         std::vector<std::string> read = task.prerequisites();
         read.push_back(task.input);
@@ -162,6 +160,8 @@ Task complete(Task task, const OutputOptions& output, const OutputRules& rules) 
 
 std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& files, const OutputOptions& output,
                                const OutputRules& rules) {
+    if (const std::size_t engines = output.engines.size(); engines > 1 && !files.output.empty())
+        throw UsageError(fmt::format("-o takes one engine of --for, {} are given; --out-dir takes many", engines));
     std::vector<Input> joined;
     if (rules.joins && (!files.output.empty() || rules.materials) && !inputs.empty()) {
         joined.assign(inputs.begin() + 1, inputs.end());
@@ -195,7 +195,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
             tasks.push_back(std::move(task));
         }
     }
-    check_engines(tasks, files, output.engines.size());
+    check_engines(tasks, output.engines.size());
     if (rules.relate) rules.relate(tasks);
     if (!files.depfile.empty()) check_depfile_names(tasks);
     check_collisions(tasks, files.depfile, files.lists(), rules.in_place && !files.output.empty());

@@ -129,6 +129,17 @@ constexpr ForeignWord kForeignWords[] = {
     {"cesiumjs", "cesium", false},
 };
 
+constexpr ForeignClause kForeignClauses[] = {
+    // What the channels hold, and not what its numbers are.
+    {"terrain-rgb terrarium", "stored", "--channel {0} reads it"},
+    {"labpbr minecraft optifine iris", "unity",
+     "LabPBR is a layout of channels: check-normals reads it with --swizzle labpbr, pack-normals and bake-normals "
+     "write it with --layout labpbr"},
+    {"terrain3d source skyrim", "unity", "that is a layout of channels: pack-normals --layout {0} writes it"},
+    {"webp png jpeg jpg exr tiff tif tga bmp dds ktx2", "dxt5nm",
+     "{0} is a file type: the name of the output ends in .{0}, or --container {0}"},
+};
+
 constexpr UnwrittenType kUnwrittenTypes[] = {
     {"avif", "avifenc --lossless n.png n.avif"},
     {"etc1s basis", "basisu -ktx2 -normal_map n.png"},
@@ -178,9 +189,10 @@ std::string foreign_word_answer(std::string_view name, const std::vector<std::st
     for (const ForeignWord& row : kForeignWords) {
         if (has_name(row.names, small) && known(row.word)) return fmt::format("; here it is {}", row.word);
     }
-    // What the channels hold, and not what its numbers are.
-    if (known("stored") && has_name("terrain-rgb terrarium", small))
-        return fmt::format("; --channel {} reads it", small);
+    for (const ForeignClause& row : kForeignClauses) {
+        if (has_name(row.names, small) && known(row.among))
+            return "; " + fmt::format(fmt::runtime(row.answer), common_word(small));
+    }
     return known("dxt5nm") || known("png") ? unwritten_type_answer(small) : std::string();
 }
 

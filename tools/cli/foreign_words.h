@@ -26,6 +26,13 @@ struct ForeignWord {
     bool is_same;            // it may be written in place of the word
 };
 
+// A word that belongs elsewhere, and where.
+struct ForeignClause {
+    std::string_view names;
+    std::string_view among;   // a word of the lists that are meant
+    std::string_view answer;  // {0}: the name
+};
+
 // A file type or an encoding that no command writes.
 struct UnwrittenType {
     std::string_view names;

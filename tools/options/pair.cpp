@@ -27,22 +27,24 @@ void PairOptions::add(Command& command) {
         .preset = std::to_string(level_);
     command.group("Limits");
     const auto add_limit = [&](std::optional<double>& limit, const char* name, const char* figure, int rank) {
-        std::string help = fmt::format("fail (exit 1) if the {} is greater", figure);
-        command
-            .option(name, "DEGREES", help,
-                    [&limit](const std::string& text) {
-                        limit = parse_double(text, {0.0, 180.0});
-                    })
-            .often(rank, help);
+        const std::string help = fmt::format("fail (exit 1) if the {} is greater", figure);
+        Row& row = command.option(name, "DEGREES", help, [&limit](const std::string& text) {
+            limit = parse_double(text, {0.0, 180.0});
+        });
+        if (rank > 0) row.often(rank, help);
     };
     add_limit(max_mean_, "--max-mean", "mean", 2);
+    add_limit(max_p99_, "--max-p99", "99th percentile", 0);
     add_limit(max_p999_, "--max-p999", "99.9th percentile", 6);
     add_limit(max_, "--max", "largest angle", 2);
 }
 
-Result<Texture> PairOptions::read(const std::string& path, int which, const ReadOptions& read, Console& console,
+Result<Texture> PairOptions::read(const ComparedMap& map, int which, const ReadOptions& read, Console& console,
                                   const Execution& execution) {
-    auto texture = read_texture(path, read);
+    const std::string& path = map.path();
+    const auto opened = map.open(read);
+    if (!opened) return opened.error();
+    auto texture = read_texture(path, *opened);
     if (!texture) return texture.error();
     const auto silent = [&console](double) { return console.host().interruption().empty(); };
     const auto swizzle = guess_swizzle(*texture, {execution.threads, silent});
@@ -55,10 +57,13 @@ Result<Texture> PairOptions::read(const std::string& path, int which, const Read
     return texture;
 }
 
-Result<MipChain> PairOptions::read_levels(const std::string& path, int which, const ReadOptions& read_options,
+Result<MipChain> PairOptions::read_levels(const ComparedMap& map, int which, const ReadOptions& read_options,
                                           Console& console, const Execution& execution) {
+    const std::string& path = map.path();
+    auto opened = map.open(read_options);
+    if (!opened) return opened.error();
     SourceOptions options;
-    options.read = read_options;
+    options.read = std::move(*opened);
     options.unpack.y_axis = y_[which];
     options.doubt_y = options.inspect = true;
     auto source = read_normals(path, options, false, execution);
@@ -138,6 +143,7 @@ std::vector<std::string> PairOptions::violations(int level, const AngularError& 
             fmt::format("level {}: {} {:.4f} degrees is over the limit of {}", level, name, figure, *limit));
     };
     hold("mean", error.mean, max_mean_);
+    hold("p99", error.p99, max_p99_);
     hold("p99.9", error.p999, max_p999_);
     hold("max", error.max, max_);
     return sentences;

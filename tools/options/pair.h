@@ -16,19 +16,20 @@
 
 #include "cli/command.h"
 #include "cli/json.h"
+#include "options/map_pairs.h"
 
 namespace tex::cli {
 
-// --y-a, --y-b, --level, --max-mean, --max-p999, --max.
+// --y-a, --y-b, --level, --max-mean, --max-p99, --max-p999, --max.
 class PairOptions {
 public:
     void add(Command& command);
 
     // Reads the texture of A (0) or B (1). If the file does not give its swizzle, the swizzle is guessed from the
     // texels, with one warning for each file. The options for y override the file.
-    [[nodiscard]] Result<Texture> read(const std::string& path, int which, const ReadOptions& read, Console& console,
+    [[nodiscard]] Result<Texture> read(const ComparedMap& map, int which, const ReadOptions& read, Console& console,
                                        const Execution& execution);
-    [[nodiscard]] Result<MipChain> read_levels(const std::string& path, int which, const ReadOptions& read,
+    [[nodiscard]] Result<MipChain> read_levels(const ComparedMap& map, int which, const ReadOptions& read,
                                                Console& console, const Execution& execution);
 
     // Warns of maps that were read by read_levels() and seem to hold something else. If both are in doubt about y, they
@@ -54,8 +55,8 @@ private:
     std::optional<YAxis> y_[2];
     int level_ = 0;
     bool all_levels_ = false;
-    std::optional<double> max_mean_, max_p999_, max_;  // degrees
-    std::set<std::string> warned_of_;                  // files
+    std::optional<double> max_mean_, max_p99_, max_p999_, max_;  // degrees
+    std::set<std::string> warned_of_;                            // files
     SourceInfo info_[2];
     std::vector<FileWarning> warnings_;
 };

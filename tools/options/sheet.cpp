@@ -11,6 +11,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "files/path_names.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -93,15 +94,34 @@ void SheetOptions::check_mesh(bool has_mesh) const {
     }
 }
 
+// The shortest name of a map that no other map has: its material, or the file with as many folders as it needs.
+std::string SheetOptions::name_apart(const std::vector<MapName>& names, std::size_t map) {
+    const auto tail = [](const std::string& file, int folders) {
+        const std::string path = slashed(file);
+        std::size_t slash = path.size();
+        for (int k = 0; k <= folders && slash != std::string::npos; ++k)
+            slash = slash == 0 ? slash : path.rfind('/', slash - 1);
+        return slash == std::string::npos || slash == 0 ? path : path.substr(slash + 1);
+    };
+    const MapName& own = names[map];
+    const auto is_unique = [&](const auto& name_of_map) {
+        return std::count_if(names.begin(), names.end(),
+                             [&](const MapName& other) { return name_of_map(other) == name_of_map(own); }) == 1;
+    };
+    const auto material = [](const MapName& name) { return name.material; };
+    if (!own.material.empty() && is_unique(material)) return own.material;
+    for (int folders = 0; tail(own.file, folders) != slashed(own.file); ++folders) {
+        const auto name = [&](const MapName& other) { return tail(other.file, folders); };
+        if (is_unique(name)) return name(own);
+    }
+    return own.file;
+}
+
 std::string SheetOptions::caption(const std::vector<MapName>& names, std::size_t map, Show show) const {
     if (no_captions_) return {};
     std::string text;
     if (shows_.size() > 1) text = name_of(kShowNames, show);
-    if (names.size() > 1) {
-        const NameFields fields = name_fields(names[map].file);
-        text +=
-            (text.empty() ? "" : ": ") + (names[map].material.empty() ? fields.stem + fields.ext : names[map].material);
-    }
+    if (names.size() > 1) text += (text.empty() ? "" : ": ") + name_apart(names, map);
     return text;
 }
 

@@ -56,6 +56,7 @@ private:
                                              PreviewOptions options, const Execution& execution) const;
     [[nodiscard]] Result<Texture> draw_difference(const std::string& name, const NormalMap& a, const NormalMap& b,
                                                   const Execution& execution) const;
+    [[nodiscard]] static std::string name_apart(const std::vector<MapName>& names, std::size_t map);
     [[nodiscard]] std::string caption(const std::vector<MapName>& names, std::size_t map, Show show) const;
 
     const SceneOptions* scene_ = nullptr;

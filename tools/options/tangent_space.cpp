@@ -75,7 +75,9 @@ void TangentSpaceOptions::add_charts(Command& command) {
     add_parts(command, "only the mesh of this node");
     command.check([this, &command] {
         check_input(command);
-        if (!has_mesh() && command.given("--material")) throw UsageError("--material needs --mesh");
+        const std::vector<std::string>& inputs = command.inputs();
+        if (!has_mesh() && command.given("--material") && std::none_of(inputs.begin(), inputs.end(), is_model))
+            throw UsageError("--material needs --mesh, or a model");
     });
 }
 

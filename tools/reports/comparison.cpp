@@ -41,6 +41,7 @@ ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedL
     if (as_json) {
         const auto degrees = [](double angle) { return static_cast<float>(angle); };
         Json line = json_of(run.inputs);
+        if (!run.material.empty()) line["material"] = run.material;
         line["level"] = level.number;
         line["extent"] = {level.extent.width, level.extent.height};
         line["texels"] = e.texels;
@@ -51,8 +52,9 @@ ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedL
     }
     std::string text;
     if (is_first) {
-        text = fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level",
-                           "texels", "mean", "rms", "p50", "p99", "p99.9", "max");
+        if (!run.material.empty()) text = run.material + ":\n";
+        text += fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level",
+                            "texels", "mean", "rms", "p50", "p99", "p99.9", "max");
     }
     text += fmt::format("{:>5} {:>11} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}  column {}, row {}",
                         level.number, fmt::format("{}x{}", level.extent.width, level.extent.height), e.mean, e.rms,
@@ -64,6 +66,7 @@ ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedL
 
 ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& error) {
     Json line = json_of(run.inputs);
+    if (!run.material.empty()) line["material"] = run.material;
     line["error"] = error_json(error, "");
     return console.print(line_of(run, std::move(line)));
 }

@@ -20,6 +20,7 @@ struct ComparisonRun {
     const std::vector<std::string>& inputs;  // the two files
     const std::vector<FileWarning>& warnings;
     Clock::time_point start = Clock::now();
+    std::string material = {};  // of the maps in models that are compared
 };
 
 // Prints the figures of a level: as a line of a table (the first line has a heading above it) or as JSON.
@@ -33,6 +34,7 @@ class CompareDocuments {
 public:
     void add(Command& command);
 
+    [[nodiscard]] bool has_any() const { return !page_path_.empty() || !heat_map_path_.empty(); }
     [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
 
     // Throws UsageError if a document cannot be written, is an input, or is another document.

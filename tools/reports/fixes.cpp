@@ -357,6 +357,12 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data && !(carries_extras(*finding.rule, report) && target_of(id, report, require))) {
+        if (id == "N212" && report.map.empty()) {
+            return {
+                "If that data belongs there, --swizzle rgb says so, and --swizzle labpbr where blue holds occlusion. "
+                "No "
+                "command is printed, because it would lose the data: save it first with unpack-normals --alpha-out."};
+        }
         return {
             "No command is printed, because it would lose what the other channels hold. Save that first with "
             "unpack-normals --alpha-out or --blue-out; pack-normals --format rgba8 keeps alpha."};

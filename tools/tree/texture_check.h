@@ -30,7 +30,8 @@ struct MadeTexture {
 class TextureCheck {
 public:
     // The key "inputs" says whether the inputs are checked, too. The other keys of `settings` are options of
-    // check-normals (require, enable, disable, severity, fail-on) and of compare-normals (max-mean, max-p999, max).
+    // check-normals (require, enable, disable, severity, fail-on) and of compare-normals (max-mean, max-p99, max-p999,
+    // max).
     // Throws UsageError with the place in the manifest.
     TextureCheck(const Manifest& manifest, const Settings& settings, Console& console);
     TextureCheck(const TextureCheck&) = delete;

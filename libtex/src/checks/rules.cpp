@@ -120,7 +120,7 @@ constexpr Rule kTextureRules[] = {
      "pack-normals FILE --format SAME -o FIXED", ""},
     {"N212", "alpha-not-one", values, note, true, "x is in R, but alpha is not 255.",
      "Unity's UnpackNormalmapRGorAG multiplies x by A. A height or gloss there bends the normals, unless the shader "
-     "reads R, G and B alone.",
+     "reads R, G and B alone. With --swizzle, which says what the channels hold, the rule is silent.",
      "pack-normals FILE --keep-length --drop --format SAME -o FIXED", ""},
     {"N213", "object-space", values, error, true, "The normals are not in tangent space.",
      "z points away from the surface in many texels and the vectors face all directions: an object-space or "

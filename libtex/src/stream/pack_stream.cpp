@@ -125,9 +125,11 @@ Result<void> PackRun::prepare() {
 Result<void> PackRun::settle_extras() {
     for (const Extra extra : kApartOrder) {
         if (!options_.apart[extra] || map_.extras()[extra]) continue;
-        return Error{
-            ErrorCode::bad_option, map_.map().path(),
-            "has no " + std::string(name_of(kExtraNames, extra)) + " beside the normals, which could be written apart"};
+        const bool is_z = extra == Extra::blue && map_.info().swizzle[2] == Component::z;
+        return Error{ErrorCode::bad_option, map_.map().path(),
+                     "has no " + std::string(name_of(kExtraNames, extra)) +
+                         " beside the normals, which could be written apart" +
+                         (is_z ? ": blue is read as z; --swizzle rg or labpbr reads it as data" : "")};
     }
     if (planes_given(options_.others) != ExtraSet() && end_ - first_ > 1) {
         return Error{ErrorCode::bad_option, map_.map().path(),

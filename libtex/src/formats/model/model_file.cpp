@@ -19,9 +19,10 @@ bool may_be_model(std::span<const std::byte> head) {
 }
 
 Result<std::unique_ptr<RowSource>> refuse_model(InputFile& file, const ReadOptions&) {
-    return Error{ErrorCode::unsupported, file.path(),
-                 "a glTF model, or other JSON, not a picture: check-normals, convert-normals, pack-normals and "
-                 "preview-normals read the normal maps of a model if its file is given"};
+    return Error{
+        ErrorCode::unsupported, file.path(),
+        "a glTF model, or other JSON, not a picture: check-normals, compare-normals, convert-normals, pack-normals "
+        "and preview-normals read the normal maps of a model if its file is given"};
 }
 
 }  // namespace tex::inline v1
