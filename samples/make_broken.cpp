@@ -337,7 +337,9 @@ void Maker::levels() {
         }
     }
     png("N601-height-mismatch", mirrored);
-    png("N602-height-inverted", codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; })));
+    const Codes inverted = codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; }));
+    png("N602-height-inverted", inverted);
+    png("N603-occlusion-mismatch", inverted);  // dark where it is high
 }
 
 void Maker::mesh(const std::string& id, const MeshPart& part) {
