@@ -337,9 +337,8 @@ void Maker::levels() {
         }
     }
     png("N601-height-mismatch", mirrored);
-    const Codes inverted = codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; }));
-    png("N602-height-inverted", inverted);
-    png("N603-occlusion-mismatch", inverted);  // dark where it is high
+    for (const char* const name : {"N602-height-inverted", "N603-occlusion-mismatch"})
+        png(name, codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; })));
 }
 
 void Maker::mesh(const std::string& id, const MeshPart& part) {

@@ -147,8 +147,8 @@ struct BakeFileReport {
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
     OcclusionMaps occlusion;        // empty unless BakeFileOptions::occlusion is set
-    // Of a tile with occlusion: the width of what was seen around it, in texels, if what lies beyond could count, too;
-    // 0 if it could not, or lies beyond the terrain.
+    // The width of what occlusion saw around a tile, in texels, if what lies beyond could count, too; 0 if it could
+    // not, or lies beyond the terrain.
     int occlusion_reach = 0;
 };
 
