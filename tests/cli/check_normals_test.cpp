@@ -246,6 +246,8 @@ TEST_F(CheckNormals, OcclusionIsComparedWithTheNormals) {
               std::string::npos);
     EXPECT_EQ(check({"good.dds", "down.dds", "--occlusion", "ao.png"}).code, 2);
     EXPECT_EQ(check({"good.dds", "--occlusion", "none.png"}).code, 3);
+    ASSERT_EQ(check({"good.dds", "--occlusion", "ao.png", "--report", "page.html"}).code, 0);
+    EXPECT_NE(scratch_.read("page.html").find("with occlusion"), std::string::npos);
     // LabPBR holds it in blue.
     bake("labpbr.png", {"--layout", "labpbr"});
     const auto packed = nlohmann::json::parse(check({"labpbr.png", "--swizzle", "labpbr", "--json"}).out);
