@@ -324,20 +324,20 @@ void Maker::levels() {
     dds("N502-level-unrelated", texture_of(chain));
     dds("N503-level-shifted", texture_of(chain_of(base, ChainFault::shifted)));
     chain = chain_of(base, ChainFault::none);
-    const auto faded =
-        chain_of(changed(base, [](int, int, double& p, double& q) { p *= 0.4, q *= 0.4; }), ChainFault::none);
+    const auto weaken = [](int, int, double& p, double& q) { p *= 0.4, q *= 0.4; };
+    const auto faded = chain_of(changed(base, weaken), ChainFault::none);
     for (std::size_t k = 2; k < chain.size(); ++k) chain[k] = faded[k];
     dds("N504-fade-unfinished", texture_of(chain));
     const Codes right = codes();
     Codes mirrored = right;  // left and right exchanged: valid normals of other heights
-    for (int k = 0; k < 128 * 128; ++k) {
-        for (int c = 0; c < 3; ++c) {
-            const int code = right.at(127 - k % 128, k / 128, c);
-            mirrored.at(k % 128, k / 128, c) = static_cast<unsigned char>(c == 0 ? 255 - code : code);
-        }
+    for (int k = 0; k < 3 * 128 * 128; ++k) {
+        const int c = k % 3, i = k / 3 % 128, j = k / 3 / 128, code = right.at(127 - i, j, c);
+        mirrored.at(i, j, c) = static_cast<unsigned char>(c == 0 ? 255 - code : code);
     }
     png("N601-height-mismatch", mirrored);
-    png("N602-height-inverted", codes_of(changed(base, [](int, int, double& p, double& q) { p = -p, q = -q; })));
+    const auto invert = [](int, int, double& p, double& q) { p = -p, q = -q; };
+    for (const char* name : {"N602-height-inverted", "N603-occlusion-mismatch"})
+        png(name, codes_of(changed(base, invert)));
 }
 
 void Maker::mesh(const std::string& id, const MeshPart& part) {

@@ -37,6 +37,7 @@ private:
     template <class Report>
     void warn_of_flat(cli::Job& job, const Report& done) const;
     void warn_of_border(cli::Job& job, double ratio) const;
+    void warn_of_reach(cli::Job& job, int reach) const;
     static void warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding);
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
@@ -63,7 +64,7 @@ private:
     [[nodiscard]] cli::ExitCode finish(cli::Console& console) override;
 
     cli::HeightReader reader_;
-    mutable cli::RepeatedWarnings walls_;
+    mutable cli::RepeatedWarnings walls_, hidden_;
     cli::WrapOptions wrap_;
     cli::KernelOption kernel_;
     cli::MipChainOptions mips_;
@@ -117,8 +118,6 @@ Result<void> BakeNormals::check(const std::vector<cli::Task>& tasks) {
     mips_.check(tasks);
     if (files.tiles && (reader_.strength.measured || reader_.heights.options.deband != Deband::off))
         throw cli::UsageError("--tiles contradicts --deband and --bumpiness auto, which look at whole pictures");
-    if (files.tiles && (sky_.is_given() || extras_.has_occlusion()))
-        throw cli::UsageError("--tiles contradicts occlusion, for which horizons may lie in any other tile");
     sky_.check(command, extras_.has_occlusion());
     return reader_.color.check();
 }
@@ -171,9 +170,13 @@ Result<void> BakeNormals::process(cli::Job& job) {
             "map in metres, gives true slopes");
     }
     warn_of_border(job, baked->border_ratio);
+    warn_of_reach(job, baked->occlusion_reach);
     const SlopeRange& slopes = baked->slopes;
     job.report["slopes"] = {{"x", {slopes.min_x, slopes.max_x}}, {"y", {slopes.min_y, slopes.max_y}}};
-    return sky_.write(job, std::move(baked->occlusion), with.pack.y_axis);
+    MipOptions levels = mips_.options(mips_.levels.value_or(0), wrap_);  // averages, whatever the normals get
+    levels.domain = MipDomain::vector;
+    levels.fade.reset();
+    return sky_.write(job, std::move(baked->occlusion), with.pack.y_axis, &levels);
 }
 
 void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent extent, Encoding encoding) {
@@ -220,9 +223,20 @@ void BakeNormals::warn_of_border(cli::Job& job, double ratio) const {
                "if they did; --wrap clamp (--wrap repeat: without this warning)");
 }
 
+// Occlusion by what lies beyond the tiles around a tile.
+void BakeNormals::warn_of_reach(cli::Job& job, int reach) const {
+    if (reach == 0) return;
+    job.report["occlusion_reach"] = reach;
+    hidden_.add(job, job.task.input,
+                fmt::format("occlusion is that of {} texels around the tile, the width of the tiles beside it: what is "
+                            "farther away could hide more of the sky; --occlusion-distance lets it count less",
+                            reach));
+}
+
 cli::ExitCode BakeNormals::finish(cli::Console& console) {
     reader_.warn_of_files(console);
     walls_.print(console);
+    hidden_.print(console);
     return cli::ExitCode::done;
 }
 

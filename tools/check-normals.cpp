@@ -87,6 +87,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
                     "A page with pictures, on which the light can be moved.");
     command.example("check-normals bricks_n.png --height bricks_h.png",
                     "Whether a normal map was made from a height map.");
+    command.example("check-normals bricks_n.png --occlusion bricks_ao.png", "Whether an occlusion map belongs to it.");
     command.example("check-normals --config checks.toml --sarif findings.sarif --junit findings.xml --files-from list",
                     "In continuous integration.");
     command.example("check-normals --baseline-write known.json old/*.dds",
@@ -113,6 +114,7 @@ Result<void> CheckNormals::check(const std::vector<cli::Task>& tasks) {
     std::vector<cli::NamedFile> others = files.lists(), beside;
     others.push_back({"--config", rules_.config()});
     others.push_back({"--height", rules_.height_file()});
+    others.push_back({"--occlusion", rules_.occlusion_file()});
     if (mesh_.has_mesh()) {
         for (const std::string& file : mesh_.files()) others.push_back({"--mesh", file});
     } else if (documents_.are_written()) {
@@ -157,9 +159,10 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
                                    [&](const Finding& finding) { return demands.fails(finding); });
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = demands.checks.require;
-    job.say(documents_.is_for_github() ? cli::github_text(report, require)
-                                       : cli::findings_text(report, require) + (lists_y_ ? cli::y_text(report) : "") +
-                                             cli::pair_text(report) + cli::seams_text(report));
+    job.say(documents_.is_for_github()
+                ? cli::github_text(report, require)
+                : cli::findings_text(report, require) + (lists_y_ ? cli::y_text(report) : "") + cli::pair_text(report) +
+                      cli::occlusion_text(report) + cli::seams_text(report));
     cli::Json json = cli::findings_json(report, require);
     if (known > 0) json["known"] = known;
     {
@@ -167,7 +170,8 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
         totals_.add(report, known);
         totals_.fails = totals_.fails || fails;
     }
-    const cli::JudgedReport judged{std::move(report), require, demands.fail_on, std::move(waived), seconds};
+    const cli::JudgedReport judged{std::move(report), require, demands.fail_on,
+                                   std::move(waived), seconds, demands.checks.occlusion};
     if (auto added = documents_.add(job, judged, mesh, read); !added) return added.error();
     return json;
 }

@@ -65,6 +65,11 @@ void read_checks(const Checking& given, Checks& checks) {
         checks.height = field_from(given.height, "height");
         options.height = &checks.height;
     }
+    if (!given.occlusion.is_none()) {
+        checks.occlusion = plane_from(given.occlusion, "occlusion");
+        options.occlusion = &checks.occlusion;
+    }
+    options.occlusion_in_blue = given.occlusion_in_blue;
     if (!given.mesh.is_none()) {
         const SelectedPart& selected = selected_from(given.mesh, "mesh");
         options.mesh = &checks.mesh.emplace(MeshToCheck{selected, given.decoder});
@@ -190,6 +195,15 @@ py::object pair_of(const std::optional<PairEvidence>& pair) {
     return facts;
 }
 
+py::object occlusion_of(const std::optional<OcclusionEvidence>& occlusion) {
+    if (!occlusion) return py::none();
+    py::dict facts;
+    facts["correlation"] = occlusion->correlation;
+    facts["mirrored"] = py::make_tuple(occlusion->mirrored_x, occlusion->mirrored_y);
+    facts["best"] = occlusion->best;
+    return facts;
+}
+
 py::object seams_of(const std::optional<SeamEvidence>& seams) {
     if (!seams) return py::none();
     py::dict facts;
@@ -230,6 +244,8 @@ void add_report(Module& module) {
                   [](const CheckReport& r) { return y_of(r.y); })
         .property("pair", "dict[str, Any] | None", "How the normals follow from the height map.",
                   [](const CheckReport& r) { return pair_of(r.pair); })
+        .property("occlusion", "dict[str, Any] | None", "How the occlusion follows the normals.",
+                  [](const CheckReport& r) { return occlusion_of(r.occlusion); })
         .property("seams", "dict[str, Any] | None", "How well the map fits the mesh: the fields of SeamEvidence.",
                   [](const CheckReport& r) { return seams_of(r.seams); })
         .property("y_on_mesh", "str | None", "Where green of the map points on the mesh.",
@@ -270,7 +286,8 @@ void add_checks(Module& module) {
         "as in unpack(). Raises what reading raises, and CancelledError. `require` is a dict of requirements, "
         "{'y': 'up', 'mips': 'full', 'pow2': True}; `enable` and `disable` list rules by id or name; `severity` is a "
         "dict "
-        "of rules and severities; `height` is the map's height map; `mesh` is the mesh that the map is on, from "
+        "of rules and severities; `height` is the map's height map; `occlusion` is the occlusion beside it, which is "
+        "in blue with `occlusion_in_blue`; `mesh` is the mesh that the map is on, from "
         "select_part(), and `decoder` the engine; with `any_length`, no rule judges the lengths of vectors, and "
         "`swizzle` names the layout; with `marks` above 0, findings have marks of at most so many squares on a side. "
         "Raises "

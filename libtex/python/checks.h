@@ -28,8 +28,8 @@ void each_judging_field(Judging& o, F& f) {
 
 // The keywords of check() and check_file().
 struct Checking : Judging {
-    py::object height = py::none(), mesh = py::none();
-    bool any_length = false;
+    py::object height = py::none(), occlusion = py::none(), mesh = py::none();
+    bool any_length = false, occlusion_in_blue = false;
     int marks = 0;
     std::optional<Swizzle> swizzle = {};
     Decoder decoder = Decoder::gltf;
@@ -39,6 +39,8 @@ template <class F>
 void each_field(Checking& o, F& f) {
     each_judging_field(o, f);
     f("height", o.height, "ArrayLike | HeightField | None");
+    f("occlusion", o.occlusion, "ArrayLike | None");
+    f("occlusion_in_blue", o.occlusion_in_blue);
     f("mesh", o.mesh, "SelectedPart | None");
     f("decoder", o.decoder);
     f("any_length", o.any_length);
@@ -50,6 +52,7 @@ void each_field(Checking& o, F& f) {
 struct Checks {
     CheckOptions options;
     HeightField height;
+    Plane<float> occlusion;
     std::optional<MeshToCheck> mesh;
 };
 

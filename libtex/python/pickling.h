@@ -327,6 +327,7 @@ void each_part(CheckReport& o, F& f) {
     f(o.more_data);
     f(o.y);
     f(o.pair);
+    f(o.occlusion);
     f(o.seams);
     f(o.y_on_mesh);
 }

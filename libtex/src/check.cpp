@@ -26,6 +26,7 @@
 #include "checks/mesh_rules.h"
 #include "checks/mip_rules.h"
 #include "checks/model_rules.h"
+#include "checks/occlusion_rules.h"
 #include "checks/pair_rules.h"
 #include "checks/picture_kind.h"
 #include "checks/rules.h"
@@ -176,6 +177,11 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = check_mip_rules(context, findings); !done) return done.error();
         CheckReport report;
         report.pair = context.pair;
+        if (auto occlusion = check_occlusion_rules(context, findings)) {
+            report.occlusion = *occlusion;
+        } else {
+            return occlusion.error();
+        }
         if (auto seams = check_mesh_rules(context, findings)) {
             report.seams = *seams;
         } else {

@@ -35,8 +35,6 @@ Result<void> validate(const BakeFileOptions& options) {
     if (options.occlusion) {
         if (auto valid = validate(*options.occlusion); !valid) return valid;
     }
-    if (options.tile && wants_occlusion(options))
-        return bad_option("occlusion: not for a tile, whose horizons may lie in any other one");
     if (auto valid = validate(options.mip); !valid) return valid;
     return validate(options.pack);
 }

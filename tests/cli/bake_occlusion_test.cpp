@@ -129,6 +129,39 @@ TEST_F(BakeOcclusion, NormalsComeBackAsTheOcclusionOfTheirHeights) {
     EXPECT_LT(difference("hor2.exr", 0, horizons.planes[0]), 0.3f);
 }
 
+TEST_F(BakeOcclusion, FilesThatHoldLevelsHaveAverages) {
+    run("bake-normals h.png -o n.png --bumpiness 6 --occlusion-out ao.dds --bent-out bent.ktx2 --fade 1,2 "
+        "--mip-domain slope --occlusion-directions 8");
+    const auto ao = read_texture(scratch_.path("ao.dds")), bent = read_texture(scratch_.path("bent.ktx2"));
+    ASSERT_TRUE(ao && bent);
+    ASSERT_EQ(ao->levels.size(), 10u);
+    ASSERT_EQ(bent->levels.size(), 10u);
+    const auto base = decode(*ao, 0), half = decode(*ao, 1), flat = decode(*bent, 3);
+    ASSERT_TRUE(base && half && flat);
+    float largest = 0.0f;
+    for (int j = 0; j < 256; ++j) {
+        for (int i = 0; i < 256; ++i) {
+            const auto at = [&](int x, int y) { return base->planes[0].at(2 * i + x, 2 * j + y); };
+            const float mean = (at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1)) / 4.0f;
+            largest = std::max(largest, std::abs(mean - half->planes[0].at(i, j)));
+        }
+    }
+    EXPECT_LT(largest, 2.0f / 65535.0f);
+    double shortest = 2.0;  // of the bent normals, which are unit again
+    float leaning = 0.0f;
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const auto part = [&](std::size_t c) { return 2.0f * flat->planes[c].at(i, j) - 1.0f; };
+            shortest = std::min(shortest, std::hypot(part(0), part(1), part(2)) * 1.0);
+            leaning = std::max(leaning, std::abs(part(0)));
+        }
+    }
+    EXPECT_GT(shortest, 0.98);
+    EXPECT_GT(leaning, 0.1f) << "--fade is for the normals";
+    run("bake-normals h.png -o n.png --bumpiness 6 --occlusion-out one.dds --mips none --occlusion-directions 8");
+    EXPECT_EQ(read_texture(scratch_.path("one.dds"))->levels.size(), 1u);
+}
+
 TEST_F(BakeOcclusion, BytesDoNotDependOnThreads) {
     for (const char* const threads : {"1", "3"}) {
         const std::string t = threads;

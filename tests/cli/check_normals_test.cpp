@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <regex>
@@ -192,6 +193,67 @@ TEST_F(CheckNormals, HeightMapsAreComparedWithTheirNormals) {
     scratch_.add_sample("waves.png", "waves.png");
     EXPECT_EQ(report("waves.png")["findings"][0]["id"], "N601");
     EXPECT_EQ(check({"good.dds", "down.dds", "--height", "bricks.png"}).code, 2);
+}
+
+// The judge of these maps is the commands of others: the rule makes its own heights from the normals.
+TEST_F(CheckNormals, OcclusionIsComparedWithTheNormals) {
+    bake("again.dds", {"--occlusion-out", "ao.png"});
+    scratch_.add_sample("waves.png", "waves.png");
+    const auto report = [&](const std::string& map, const std::string& occlusion) {
+        return nlohmann::json::parse(check({map, "--occlusion", occlusion, "--json"}).out);
+    };
+    const auto notes = [&](const std::string& map, const std::string& occlusion) {
+        auto findings = report(map, occlusion)["findings"].get<std::vector<nlohmann::json>>();
+        std::erase_if(findings, [](const nlohmann::json& finding) { return finding["id"] != "N603"; });
+        return findings;
+    };
+    const auto own = report("good.dds", "ao.png");
+    EXPECT_GT(own["occlusion"]["correlation"], 0.9);
+    EXPECT_EQ(own["findings"].size(), 0u);
+    const auto expect_note = [&](const std::string& map, const std::string& occlusion, const std::string& words) {
+        const auto findings = notes(map, occlusion);
+        ASSERT_EQ(findings.size(), 1u) << occlusion;
+        EXPECT_EQ(findings[0]["severity"], "note");
+        EXPECT_NE(findings[0]["message"].get<std::string>().find(words), std::string::npos) << findings[0]["message"];
+    };
+    expect_note("good.dds", "waves.png", "their correlation is ");
+    const auto change = [&](const std::string& from, const std::string& to, auto changed) {
+        const Image image = *read_image(scratch_.path(from));
+        const Extent extent = image.extent();
+        RoughnessChain chain;
+        chain.levels.emplace_back(extent);
+        for (int j = 0; j < extent.height; ++j) {
+            for (int i = 0; i < extent.width; ++i) chain.levels[0].at(i, j) = changed(image.planes[0], i, j);
+        }
+        const auto bytes = encode_file(*pack_roughness(chain), Container::png);
+        ASSERT_TRUE(bytes);
+        scratch_.write(to, std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size()));
+    };
+    change("ao.png", "closed.png", [](const Plane<float>& from, int i, int j) { return 1.0f - from.at(i, j); });
+    expect_note("good.dds", "closed.png", "inverted");
+    // Bricks are the same in a mirror.
+    change("bricks.png", "bent.png", [](const Plane<float>&, int i, int j) {
+        return static_cast<float>(0.5 + 0.4 * std::sin(0.0004 * i * j) * std::sin(0.04 * i + 0.09 * j));
+    });
+    const Ran made = run(scratch_, "bake-normals",
+                         {"bent.png", "-o", "bent_n.png", "--bumpiness", "12", "--occlusion-out", "bent_ao.png"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(notes("bent_n.png", "bent_ao.png").size(), 0u);
+    const auto right = [](const Plane<float>& from, int i, int j) { return from.at(511 - i, j); };
+    change("bent_ao.png", "flopped.png", right);
+    expect_note("bent_n.png", "flopped.png", "mirrored from left to right");
+    EXPECT_NE(check({"good.dds", "--occlusion", "ao.png"}).out.find("correlation of the occlusion with the surface"),
+              std::string::npos);
+    EXPECT_EQ(check({"good.dds", "down.dds", "--occlusion", "ao.png"}).code, 2);
+    EXPECT_EQ(check({"good.dds", "--occlusion", "none.png"}).code, 3);
+    ASSERT_EQ(check({"good.dds", "--occlusion", "ao.png", "--report", "page.html"}).code, 0);
+    EXPECT_NE(scratch_.read("page.html").find("with occlusion"), std::string::npos);
+    // LabPBR holds it in blue.
+    bake("labpbr.png", {"--layout", "labpbr"});
+    const auto packed = nlohmann::json::parse(check({"labpbr.png", "--swizzle", "labpbr", "--json"}).out);
+    EXPECT_GT(packed["occlusion"]["correlation"], 0.9);
+    const auto plain = nlohmann::json::parse(check({"labpbr.png", "--swizzle", "rg", "--json"}).out);
+    EXPECT_FALSE(plain.contains("occlusion"));
 }
 
 TEST_F(CheckNormals, DocumentsNeverReplaceWhatIsRead) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // bake-normals --tiles: the tiles of a terrain, which a pattern names.
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -140,6 +142,73 @@ TEST_F(Tiles, SmallerLevelsHaveTheBytesOfTheWholeToo) {
                       0)
                 << level;
     }
+}
+
+// Hills of 16 texels, so that horizons lie in other tiles. With the distance, no tile has to see farther than its
+// neighbours.
+TEST_F(Tiles, OcclusionSeesTheTilesAround) {
+    const auto write = [&](const std::string& name, int left, int top, int side) {
+        std::string bytes;
+        for (int j = top; j < top + side; ++j) {
+            for (int i = left; i < left + side; ++i) {
+                const auto height =
+                    static_cast<int>(20000.0 + 9000.0 * std::sin(0.4 * i) * std::cos(0.31 * j + 0.1 * i));
+                bytes += static_cast<char>(height & 0xff);
+                bytes += static_cast<char>(height >> 8);
+            }
+        }
+        scratch_.write(name, bytes);
+    };
+    for (int y = 0; y < kTiles; ++y) {
+        for (int x = 0; x < kTiles; ++x) write(fmt::format("h_{}_{}.r16", x, y), kSide * x, kSide * y, kSide);
+    }
+    write("whole.r16", 0, 0, kSide * kTiles);
+    const auto with = [](std::vector<std::string> arguments, const char* distance) {
+        arguments.insert(arguments.end(), {"--occlusion-out", "{stem}_ao.exr", "--bent-out", "{stem}_b.exr",
+                                           "--horizon-out", "{stem}_hor.exr", "--occlusion-distance", distance});
+        return arguments;
+    };
+    const Ran ran = bake(with({"h_{x}_{y}.r16", "--tiles", "-o", "n_{x}_{y}.exr", "--threads", "2"}, "12"));
+    ASSERT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(ran.err.find("farther away"), std::string::npos) << ran.err;
+    const Ran all = bake({"whole.r16", "-o", "whole.exr", "--occlusion-out", "whole_ao.exr", "--bent-out",
+                          "whole_b.exr", "--horizon-out", "whole_hor.exr", "--occlusion-distance", "12"});
+    ASSERT_EQ(all.code, 0) << all.err;
+    const auto plane = [&](const std::string& name) { return std::move(read_image(scratch_.path(name))->planes[0]); };
+    const Plane<float> whole_ao = plane("whole_ao.exr"), whole_bent = plane("whole_b.exr"),
+                       whole_horizons = plane("whole_hor.exr");
+    double sum = 0.0, bent_sum = 0.0, largest = 0.0, horizon_sum = 0.0;
+    for (int y = 0; y < kTiles; ++y) {
+        for (int x = 0; x < kTiles; ++x) {
+            const Plane<float> ao = plane(fmt::format("h_{}_{}_ao.exr", x, y)),
+                               bent = plane(fmt::format("h_{}_{}_b.exr", x, y)),
+                               horizons = plane(fmt::format("h_{}_{}_hor.exr", x, y));
+            ASSERT_EQ(ao.extent(), (Extent{kSide, kSide}));
+            ASSERT_EQ(horizons.extent(), (Extent{kSide, 8 * kSide}));
+            for (int j = 0; j < kSide; ++j) {
+                for (int i = 0; i < kSide; ++i) {
+                    const int column = kSide * x + i, row = kSide * y + j;
+                    const double gap = std::abs(ao.at(i, j) - whole_ao.at(column, row));
+                    sum += gap;
+                    largest = std::max(largest, gap);
+                    bent_sum += std::abs(bent.at(i, j) - whole_bent.at(column, row));
+                    const int slice = 3;  // up and to the left
+                    horizon_sum += std::abs(horizons.at(i, slice * kSide + j) -
+                                            whole_horizons.at(column, slice * kSide * kTiles + row));
+                }
+            }
+        }
+    }
+    constexpr double kTexels = kSide * kSide * kTiles * kTiles;
+    EXPECT_LT(sum / kTexels, 0.003);  // lines lie differently between the texels
+    EXPECT_LT(largest, 0.03);
+    EXPECT_LT(bent_sum / kTexels, 0.01);
+    EXPECT_LT(horizon_sum / kTexels, 0.01);
+    // Without a distance, everything counts, and the tiles around one are all that it sees.
+    const Ran far = bake(with({"h_{x}_{y}.r16", "--tiles", "-o", "f_{x}_{y}.exr", "--json"}, "0"));
+    ASSERT_EQ(far.code, 0) << far.err;
+    EXPECT_NE(far.err.find("occlusion is that of 16 texels around the tile"), std::string::npos) << far.err;
+    EXPECT_NE(far.out.find("\"occlusion_reach\":16"), std::string::npos) << far.out;
 }
 
 // A rule of a manifest whose inputs are tiles; `more` are further steps.

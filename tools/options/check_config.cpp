@@ -96,6 +96,7 @@ private:
             if (!node->is_string()) fail(*node, "swizzle must be a string");
             try {
                 options.swizzle = parse_swizzle(node->as_string()->get());
+                options.occlusion_in_blue = has_occlusion_in_blue(node->as_string()->get());
             } catch (const UsageError& error) {
                 fail(*node, fmt::format("swizzle: {}", error.what()));
             }

@@ -2,6 +2,7 @@
 
 #include "options/maps.h"
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 
@@ -22,6 +23,27 @@ Format map_format(Container container) {
     }
     return Format::r8_unorm;
 }
+
+namespace {
+
+// Levels of values as those of data beside normals, which are flat here.
+Result<RoughnessChain> averages(Plane<float> values, const MipOptions& mips, const Execution& execution) {
+    const Extent extent = values.extent();
+    NormalMap base(extent);
+    for (int j = 0; j < extent.height; ++j) {
+        std::fill_n(base.x.row(j), extent.width, 0.0f);
+        std::fill_n(base.y.row(j), extent.width, 0.0f);
+        std::fill_n(base.z.row(j), extent.width, 1.0f);
+    }
+    base.alpha = std::move(values);
+    auto chain = build_mip_chain(std::move(base), mips, execution);
+    if (!chain) return chain.error();
+    RoughnessChain levels;
+    for (NormalMap& level : chain->levels) levels.levels.push_back(std::move(level.alpha));
+    return levels;
+}
+
+}  // namespace
 
 Row& MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
@@ -74,19 +96,33 @@ Result<void> MapOutput::write(Job& job, const Texture& texture, Json& report) co
     return {};
 }
 
-Result<void> MapOutput::write(Job& job, Plane<float> values, Json& report) const {
+Result<void> MapOutput::write(Job& job, Plane<float> values, Json& report, const MipOptions* mips) const {
+    const Container container = container_of_path(path_of(job.task));
     RoughnessChain chain;
-    chain.levels.push_back(std::move(values));
-    const Format format = map_format(container_of_path(path_of(job.task)));
-    const auto texture = pack_roughness(chain, format, Effort::normal, {job.threads(), {}});
+    if (mips != nullptr && can_hold_blocks(container)) {
+        auto levels = averages(std::move(values), *mips, {job.threads(), {}});
+        if (!levels) return levels.error();
+        chain = std::move(*levels);
+    } else {
+        chain.levels.push_back(std::move(values));
+    }
+    const auto texture = pack_roughness(chain, map_format(container), Effort::normal, {job.threads(), {}});
     if (!texture) return texture.error();
+    if (mips != nullptr) report["levels"] = chain.levels.size();
     return write(job, *texture, report);
 }
 
-Result<void> MapOutput::write(Job& job, NormalMap normals, YAxis y, Json& report) const {
+Result<void> MapOutput::write(Job& job, NormalMap normals, YAxis y, Json& report, const MipOptions* mips) const {
     const Container container = container_of_path(path_of(job.task));
     MipChain chain;
-    chain.levels.push_back(std::move(normals));
+    if (mips != nullptr && can_hold_blocks(container)) {
+        auto levels = build_mip_chain(std::move(normals), *mips, {job.threads(), {}});
+        if (!levels) return levels.error();
+        chain = std::move(*levels);
+    } else {
+        chain.levels.push_back(std::move(normals));
+    }
+    if (mips != nullptr) report["levels"] = chain.levels.size();
     PackOptions with;
     with.encoding = can_hold_blocks(container) ? Encoding::rgb8 : default_encoding(container);
     with.y_axis = y;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <tex/file.h>
+#include <tex/mip.h>
 #include <tex/types.h>
 
 #include "cli/command.h"
@@ -32,10 +33,13 @@ public:
     // Writes a picture of one channel as floats or with 16 bits (8 if the file type holds no more), or one with the
     // planes R, G and B with 8 bits. Values of pictures are in [0, 1]. Adds the file to the outputs of the job, and its
     // name to `report`.
-    [[nodiscard]] Result<void> write(Job& job, Plane<float> values, Json& report) const;
+    // With `mips`, files of block formats (dds, ktx2) hold these levels: averages.
+    [[nodiscard]] Result<void> write(Job& job, Plane<float> values, Json& report,
+                                     const MipOptions* mips = nullptr) const;
     [[nodiscard]] Result<void> write(Job& job, const Image& colors, Json& report) const;
     // Writes normals as bytes, or as half floats in exr. Adds as above.
-    [[nodiscard]] Result<void> write(Job& job, NormalMap normals, YAxis y, Json& report) const;
+    [[nodiscard]] Result<void> write(Job& job, NormalMap normals, YAxis y, Json& report,
+                                     const MipOptions* mips = nullptr) const;
     // Writes a texture that its file type can hold.
     [[nodiscard]] Result<void> write(Job& job, const Texture& texture, Json& report) const;
     // The file type. Throws UsageError as amend().

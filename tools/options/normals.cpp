@@ -129,6 +129,8 @@ std::optional<Swizzle> parse_swizzle(const std::string& text, const std::vector<
     return word == kLabPbr ? kSwizzleXy : find_by_name(kSwizzleNames, word);
 }
 
+bool has_occlusion_in_blue(const std::string& swizzle) { return swizzle == kLabPbr; }
+
 std::vector<Word> swizzle_words() {
     std::vector<Word> words = words_of(kSwizzleNames);
     words.insert(words.begin(), {kAutomatic, "as the file says, else guessed from the texels"});

@@ -42,6 +42,8 @@ inline constexpr Named<LengthIn> kLengthInNames[] = {
 // The layout that a word of kSwizzleNames, "labpbr" or the channels of x, y and, if it is stored, z name: "abg",
 // "x=a,y=b,z=g". Nothing for "auto" and the words of `more`. Throws UsageError if it is none of these.
 std::optional<Swizzle> parse_swizzle(const std::string& text, const std::vector<std::string>& more = {});
+// Whether the word names a layout with occlusion in blue.
+[[nodiscard]] bool has_occlusion_in_blue(const std::string& swizzle);
 // What --swizzle takes.
 std::vector<Word> swizzle_words();
 

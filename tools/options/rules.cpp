@@ -66,7 +66,10 @@ void RuleOptions::add(Command& command) {
         };
     };
     Row& layout = command.option("--swizzle", "S", "which channels hold x and y: labpbr, rg, dxt5nm ..., or ag",
-                                 [this](const std::string& text) { swizzle_ = parse_swizzle(text); });
+                                 [this](const std::string& text) {
+                                     swizzle_ = parse_swizzle(text);
+                                     given_.occlusion_in_blue = has_occlusion_in_blue(text);
+                                 });
     layout.words = swizzle_words();
     layout.preset = "auto";
     layout.completes = Completes::words;
@@ -103,6 +106,10 @@ void RuleOptions::add(Command& command) {
         .text(height_file_, "--height", "FILE",
               "the height map that the (single) input was made from: check that it matches")
         .completes = Completes::files;
+    command
+        .text(occlusion_file_, "--occlusion", "FILE",
+              "the occlusion beside the (single) input, in red or grey: check that it follows the normals")
+        .completes = Completes::files;
     command.flag(list_, "--list", "list all rules and exit");
     command.option("--explain", "ID", "explain one rule and exit",
                    [this](const std::string& text) { explain_ = &parse_rule(text); });
@@ -118,7 +125,10 @@ Demands RuleOptions::merged(const CheckSettings& settings, const Command& comman
         if (!checks.require.y) checks.require.y = engine->y;
     }
     checks.any_length = checks.any_length || length_in_;
-    if (swizzle_) checks.swizzle = *swizzle_;
+    if (swizzle_) {
+        checks.swizzle = *swizzle_;
+        checks.occlusion_in_blue = given_.occlusion_in_blue;
+    }
     append(checks.enable, given_.enable);
     append(checks.severity, given_.severity);
     // A rule may appear with its id in one place and with its name in the other.
@@ -174,8 +184,16 @@ std::vector<std::string> RuleOptions::idle_rules(const std::vector<Task>& tasks)
 
 Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& tasks, const ReadOptions& read) {
     if (auto merged = merge_config(command); !merged) return merged;
-    if (height_file_.empty()) return {};
-    if (tasks.size() != 1) throw UsageError("--height goes with a single file");
+    for (const auto& [option, file] : {std::pair("--height", &height_file_), {"--occlusion", &occlusion_file_}}) {
+        if (!file->empty() && tasks.size() != 1) throw UsageError(fmt::format("{} goes with a single file", option));
+    }
+    if (!height_file_.empty()) {
+        if (auto done = read_height(read); !done) return done;
+    }
+    return occlusion_file_.empty() ? Result<void>() : read_occlusion(read);
+}
+
+Result<void> RuleOptions::read_height(const ReadOptions& read) {
     const auto image = read_image(height_file_, read);
     if (!image) return image.error();
     auto field = height_field(*image, {});
@@ -183,6 +201,18 @@ Result<void> RuleOptions::read(const Command& command, const std::vector<Task>& 
     height_ = std::move(*field);
     demands_.checks.height = &*height_;
     for (Demands& demands : of_rules_) demands.checks.height = &*height_;
+    return {};
+}
+
+// Occlusion is in red, as glTF has it, or in the one channel of a grey picture.
+Result<void> RuleOptions::read_occlusion(const ReadOptions& read) {
+    auto image = read_image(occlusion_file_, read);
+    if (!image) return image.error();
+    const auto red = std::find(image->names.begin(), image->names.end(), "R");
+    const auto channel = red == image->names.end() ? 0 : red - image->names.begin();
+    occlusion_ = std::move(image->planes[static_cast<std::size_t>(channel)]);
+    demands_.checks.occlusion = &occlusion_;
+    for (Demands& demands : of_rules_) demands.checks.occlusion = &occlusion_;
     return {};
 }
 

@@ -27,13 +27,14 @@ struct Demands {
 };
 
 // --require, --for, --swizzle, --length-in, --enable, --disable, --severity, --config, --root, --fail-on, --height,
-// --list, --explain.
+// --occlusion, --list, --explain.
 class RuleOptions {
 public:
     void add(Command& command);
 
     [[nodiscard]] const std::string& config() const { return config_; }
     [[nodiscard]] const std::string& height_file() const { return height_file_; }
+    [[nodiscard]] const std::string& occlusion_file() const { return occlusion_file_; }
     [[nodiscard]] bool list() const { return list_; }
     [[nodiscard]] const Rule* explain() const { return explain_; }  // or null
 
@@ -52,6 +53,8 @@ public:
 private:
     // The place in file_rules_ of the rule for the file `path`; their number if there is none.
     [[nodiscard]] std::size_t rule_of(const std::string& path) const;
+    [[nodiscard]] Result<void> read_height(const ReadOptions& read);
+    [[nodiscard]] Result<void> read_occlusion(const ReadOptions& read);
     [[nodiscard]] Result<void> merge_config(const Command& command);
     [[nodiscard]] Demands merged(const CheckSettings& settings, const Command& command) const;
 
@@ -59,8 +62,8 @@ private:
     std::vector<std::string> required_;   // --require
     std::vector<const Engine*> engines_;  // --for
     std::optional<LengthIn> length_in_;
-    std::optional<std::optional<Swizzle>> swizzle_;  // --swizzle; of "auto", nothing
-    std::string config_, height_file_;               // paths, or empty
+    std::optional<std::optional<Swizzle>> swizzle_;      // --swizzle; of "auto", nothing
+    std::string config_, height_file_, occlusion_file_;  // paths, or empty
     std::string root_;                          // that patterns of the configuration are relative to; empty: its folder
     Severity least_failing_ = Severity::error;  // --fail-on
     bool list_ = false;
@@ -70,6 +73,7 @@ private:
     std::vector<CheckRule> file_rules_;  // of the configuration
     std::vector<Demands> of_rules_;      // for each of them
     std::optional<HeightField> height_;
+    Plane<float> occlusion_;
 };
 
 }  // namespace tex::cli

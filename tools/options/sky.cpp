@@ -76,16 +76,16 @@ void SkyOptions::check(const Command& command, bool is_extra) const {
             "beside the normals");
 }
 
-Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y) const {
+Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y, const MipOptions* mips) const {
     if (occlusion_.is_given()) {
-        if (auto done = write_plane(job, occlusion_, std::move(maps.occlusion), "occlusion"); !done) return done;
+        if (auto done = write_plane(job, occlusion_, std::move(maps.occlusion), "occlusion", mips); !done) return done;
     }
     if (sky_view_.is_given()) {
-        if (auto done = write_plane(job, sky_view_, std::move(maps.sky_view), "sky_view"); !done) return done;
+        if (auto done = write_plane(job, sky_view_, std::move(maps.sky_view), "sky_view", mips); !done) return done;
     }
     if (bent_.is_given()) {
         Json report;
-        if (auto done = bent_.write(job, std::move(maps.bent), y, report); !done) return done;
+        if (auto done = bent_.write(job, std::move(maps.bent), y, report, mips); !done) return done;
         job.report["bent"] = std::move(report);
     }
     return horizon_.is_given() ? write_horizons(job, std::move(maps.horizons)) : Result<void>();
@@ -106,9 +106,10 @@ Result<void> SkyOptions::write_horizons(Job& job, std::vector<Plane<float>> hori
 }
 
 // Into report[key].
-Result<void> SkyOptions::write_plane(Job& job, const MapOutput& output, Plane<float> values, const char* key) {
+Result<void> SkyOptions::write_plane(Job& job, const MapOutput& output, Plane<float> values, const char* key,
+                                     const MipOptions* mips) {
     Json report;
-    if (auto done = output.write(job, std::move(values), report); !done) return done;
+    if (auto done = output.write(job, std::move(values), report, mips); !done) return done;
     job.report[key] = std::move(report);
     return {};
 }

@@ -29,12 +29,13 @@ public:
     // Throws UsageError if an option has no effect.
     void check(const Command& command, bool is_extra) const;
 
-    // Write what the user wants, and add it to the job's report. `y` is that of the bent normals.
-    [[nodiscard]] Result<void> write(Job& job, OcclusionMaps maps, YAxis y) const;
+    // Write what the user wants, and add it to the job's report. `y` is that of the bent normals. With `mips`, files
+    // that hold blocks have levels, too, except those of horizons, whose slices would mix.
+    [[nodiscard]] Result<void> write(Job& job, OcclusionMaps maps, YAxis y, const MipOptions* mips = nullptr) const;
 
 private:
     [[nodiscard]] static Result<void> write_plane(Job& job, const MapOutput& output, Plane<float> values,
-                                                  const char* key);
+                                                  const char* key, const MipOptions* mips);
     [[nodiscard]] Result<void> write_horizons(Job& job, std::vector<Plane<float>> horizons) const;
 
     OcclusionOptions options_;

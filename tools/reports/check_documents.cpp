@@ -112,7 +112,7 @@ Result<void> CheckDocuments::add_to_page(Job& job, const JudgedReport& judged, c
         const auto texture = read();
         if (!texture) return texture.error();
         auto drawn = draw_html_map(title_of(report), *texture, report.swizzle, report.y.y.value_or(texture->y_axis),
-                                   mesh, sizes_, job.until(1.0));
+                                   mesh, sizes_, job.until(1.0), judged.occlusion);
         // A file that holds no normals has findings, and no pictures.
         if (drawn)
             map = std::move(*drawn);

@@ -74,6 +74,12 @@ std::string pair_text(const CheckReport& report) {
                        pair.offset_y);
 }
 
+std::string occlusion_text(const CheckReport& report) {
+    if (!report.occlusion) return {};
+    return fmt::format("{}: correlation of the occlusion with the surface: {:.2f}\n", printable(title_of(report)),
+                       report.occlusion->correlation);
+}
+
 std::string y_text(const CheckReport& report) {
     if (report.error) return {};
     const std::string words = report.y.y ? fmt::format("green points {}", name_of_y(*report.y.y))
@@ -112,6 +118,11 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
                         {"strength", static_cast<float>(report.pair->strength)},
                         {"y", name_of_y(report.pair->y)},
                         {"offset", {report.pair->offset_x, report.pair->offset_y}}};
+    }
+    if (report.occlusion) {
+        json["occlusion"] = {{"correlation", static_cast<float>(report.occlusion->correlation)},
+                             {"mirrored", {report.occlusion->mirrored_x, report.occlusion->mirrored_y}},
+                             {"best", static_cast<float>(report.occlusion->best)}};
     }
     if (report.seams) {
         json["seams"] = {{"edges", report.seams->edges},

@@ -25,6 +25,9 @@ namespace tex::cli {
 // The result of the comparison with the height map, even if it is not a finding; empty if there is no height map.
 [[nodiscard]] std::string pair_text(const CheckReport& report);
 
+// How the occlusion follows the normals, even if it is not a finding; empty if there is none.
+[[nodiscard]] std::string occlusion_text(const CheckReport& report);
+
 // Which way green points in the map, as the texels show.
 [[nodiscard]] std::string y_text(const CheckReport& report);
 

@@ -100,6 +100,7 @@ std::string facts_html(const CheckReport& report) {
                      fmt::format("correlation {:.3f}, strength {:.2f}, offset {}, {}", report.pair->correlation,
                                  report.pair->strength, report.pair->offset_x, report.pair->offset_y));
     }
+    if (report.occlusion) html += fact("occlusion", fmt::format("correlation {:.3f}", report.occlusion->correlation));
     if (report.explained > 0)
         html += fact("left out", fmt::format("{} that another finding explains", report.explained));
     return html + "</dl>\n";

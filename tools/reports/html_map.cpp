@@ -115,6 +115,23 @@ Result<void> add_mesh(const Drawing& from) {
     return {};
 }
 
+// Occlusion darkens ambient light alone, of which there is more here than in the other pictures.
+Result<void> add_occluded(const Drawing& from, const Plane<float>& occlusion) {
+    PreviewScene scene;
+    scene.map = &from.map.chain;
+    scene.map_without_z = from.map.without_z();
+    scene.occlusion = &occlusion;
+    PreviewOptions options;
+    options.size = {from.sizes.view, 0};
+    options.ambient = {0.6f, 0.6f, 0.6f};
+    const auto picture = preview(scene, options, from.execution);
+    if (!picture) return picture.error();
+    auto drawn = html_picture(*picture, "with occlusion", "the map in much ambient light, which its occlusion darkens");
+    if (!drawn) return drawn.error();
+    from.map.views.push_back(std::move(*drawn));
+    return {};
+}
+
 bool applies(const Drawing& from, const View& view) {
     if (view.needs_z && from.map.without_z()) return false;
     if (view.show == Show::mips && from.map.stored_levels == 1) return false;
@@ -237,7 +254,8 @@ Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, st
 }
 
 Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle, YAxis y,
-                              const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution) {
+                              const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution,
+                              const Plane<float>* occlusion) {
     HtmlMap map;
     map.file = file;
     map.format = texture.format;
@@ -257,6 +275,10 @@ Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, c
     }
     const MipChain& mesh_chain = turned.levels.empty() ? map.chain : turned;
     if (const auto drawn = draw_pictures({map, mesh, mesh_chain, sizes, execution}); !drawn) return drawn.error();
+    if (occlusion != nullptr && sizes.view > 0) {
+        if (auto added = add_occluded({map, mesh, mesh_chain, sizes, execution}, *occlusion); !added)
+            return added.error();
+    }
 
     // A mesh needs smaller levels, and those of packed maps cannot be made in the page.
     const bool needs_levels = mesh != nullptr && map.stored_levels == 1;

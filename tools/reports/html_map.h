@@ -113,9 +113,9 @@ struct MapOnMesh {
 };
 
 // Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says; also on its mesh,
-// unless that is null. Errors: those of the verbs.
+// unless that is null, and under ambient light with its occlusion, unless that is null. Errors: those of the verbs.
 [[nodiscard]] Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
                                             YAxis y, const MapOnMesh* mesh, const HtmlSizes& sizes,
-                                            const Execution& execution);
+                                            const Execution& execution, const Plane<float>* occlusion = nullptr);
 
 }  // namespace tex::cli

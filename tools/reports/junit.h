@@ -15,8 +15,9 @@ struct JudgedReport {
     CheckReport report;
     Requirements require;
     Severity fail_on = Severity::error;
-    std::vector<Finding> waived = {};  // by the baseline
-    double seconds = 0.0;              // that the check took
+    std::vector<Finding> waived = {};         // by the baseline
+    double seconds = 0.0;                     // that the check took
+    const Plane<float>* occlusion = nullptr;  // beside the map, for its pictures; must outlive the documents
 };
 
 // One test case for each file: a failure with the findings at or above its `fail_on`; an error if the file could not be

@@ -195,8 +195,11 @@ struct CheckOptions {
     bool any_length = false;                                 // lengths are data, or do not matter: no rule judges them
     std::optional<Swizzle> swizzle = {};  // the channels of x, y and z; none: as guess_swizzle() and the texels say
     const HeightField* height = nullptr;  // the map's heights, for the rules of the pair; not owned
-    const MeshToCheck* mesh = nullptr;    // the mesh that the map is on; not owned
-    const MapInModel* model = nullptr;    // the model that uses the map; not owned
+    // The occlusion beside the map, from 0 (closed) to 1 (open), for rule N603; not owned.
+    const Plane<float>* occlusion = nullptr;
+    bool occlusion_in_blue = false;     // without `occlusion`: blue holds it, as in LabPBR
+    const MeshToCheck* mesh = nullptr;  // the mesh that the map is on; not owned
+    const MapInModel* model = nullptr;  // the model that uses the map; not owned
     // Above 0: findings have Marks, with at most so many squares on a side (kMostMarks at most). They take a look at
     // every texel for each finding.
     int marks = 0;
@@ -270,6 +273,13 @@ struct PairEvidence {
     [[nodiscard]] bool decides() const { return correlation >= kHeightsFollow && offset_x == 0 && offset_y == 0; }
 };
 
+// How an occlusion map follows the normals: beside the occlusion of the heights that integrate() finds for them.
+struct OcclusionEvidence {
+    double correlation = 0.0;                     // of both; below 0: open and closed may be exchanged
+    bool mirrored_x = false, mirrored_y = false;  // the occlusion fits better when it is mirrored so
+    double best = 0.0;                            // the correlation of the one that is mirrored so
+};
+
 // How well the map fits the mesh: the angles in degrees between the decoded normals on both sides of UV seams. Each
 // seam edge counts by its length in object space.
 struct SeamEvidence {
@@ -317,8 +327,9 @@ struct CheckReport {
     bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask
     YEvidence y;
     std::optional<PairEvidence> pair;
-    std::optional<SeamEvidence> seams;  // nothing: there is no mesh, or it has no seams
-    std::optional<YAxis> y_on_mesh;     // where green of the map points on the mesh, as MeshToCheck says
+    std::optional<OcclusionEvidence> occlusion;  // nothing: there is none, or nothing to compare
+    std::optional<SeamEvidence> seams;           // nothing: there is no mesh, or it has no seams
+    std::optional<YAxis> y_on_mesh;              // where green of the map points on the mesh, as MeshToCheck says
 };
 
 // Checks that all rules in the options exist. Errors: bad_option.

@@ -116,7 +116,8 @@ struct BakeFileOptions {
     ExtraInputs others;          // every output must have room for them
     bool slopes = false;         // whether BakeFileReport::slopes is computed
     // If set, BakeFileReport::occlusion gets what occlusion() makes of the heights. Its directions and its distance are
-    // also those of ExtraData::occlusion. Not for a tile. Texels that fill_invalid has filled are holes.
+    // also those of ExtraData::occlusion. Texels that fill_invalid has filled are holes. Of a tile, the surface is that
+    // of the tile and the tiles around it.
     std::optional<OcclusionOptions> occlusion;
 
     // Called when all rows were read, and before any file appears: an error means that none does. Must not throw.
@@ -146,6 +147,9 @@ struct BakeFileReport {
     std::int64_t steep_texels = 0;  // of the base level: slopes above steepest_slope() of the encoding
     std::optional<RdoReport> rdo;   // of the first file whose blocks are optimised
     OcclusionMaps occlusion;        // empty unless BakeFileOptions::occlusion is set
+    // The width of what occlusion saw around a tile, in texels, if what lies beyond could count, too; 0 if it could
+    // not, or lies beyond the terrain.
+    int occlusion_reach = 0;
 };
 
 // Bakes the height map `input` ("-" is standard input) and writes it to `output` as a file of type `container`.
@@ -155,7 +159,7 @@ struct BakeFileReport {
 //   fill_invalid        all heights, and for each the row of its nearest valid neighbour: 8 bytes a texel
 //   deband              all heights, and what deband() needs besides: 13 bytes a texel
 //   occlusion           all heights, the maps, and what occlusion() needs besides: 20 bytes a texel and the maps; 32
-//                       if texels are filled
+//                       if texels are filled; of a tile with its neighbours, thus up to nine times that
 //   TIFF, JPEG out      all packed texels: the reader process encodes whole pictures
 //   EXR out             compressed tiles of smaller levels, until the base level is done: up to 4 MB, and the rest in a
 //                       file without a name in the folder of the output

@@ -303,6 +303,13 @@ constexpr Rule kTextureRules[] = {
      "The normals follow from it with the opposite sign. Where they are right it is a depth map, and shaders want to "
      "be told; else bake them again.",
      "If this is a height map, bake the normals again from it. If it is a depth map, keep both.", ""},
+    {"N603", "occlusion-mismatch", pair, note, true, "The occlusion does not follow the normals.",
+     "It is compared with the occlusion, the heights and the curvature of the surface that the normals show. None "
+     "correlates with it by 0.15, or one does only with the mirrored or inverted occlusion. Then it is of another map, "
+     "was mirrored without the normals, or 1 is closed in it. Where the direction of green does not show, only "
+     "mirrored and inverted maps are found: occlusion of a mesh or by hand does not follow from normals either.",
+     "Make sure that this is the occlusion of these normals. integrate-normals --occlusion-out makes one from them.",
+     ""},
 };
 
 constexpr auto kRules = [] {

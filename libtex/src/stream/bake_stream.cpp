@@ -16,6 +16,7 @@
 #include "stream/height_stage.h"
 #include "stream/level_stage.h"
 #include "stream/occluded_heights.h"
+#include "stream/occluded_tile.h"
 #include "stream/open_heights.h"
 #include "stream/slope_collector.h"
 #include "stream/targets.h"
@@ -52,9 +53,14 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
         report.levels = levels_to_build(options.mip, extent);
     std::vector<FileTarget> files = {{output, options.level_names, container, options.pack, options.write}};
     add_targets(options.more, {}, files);
-    if (occludes) {
-        auto maps = occluded_heights(std::move(heights->with_holes), head_of(*heights, options), options,
-                                     part_of(execution, filled, occluded));
+    const Execution occluding = part_of(execution, filled, occluded);
+    if (occludes && options.tile) {
+        auto tile = occluded_tile(file.path(), head_of(*heights, options), options, occluding);
+        if (!tile) return tile.error();
+        report.occlusion = std::move(tile->maps);
+        report.occlusion_reach = tile->reach;
+    } else if (occludes) {
+        auto maps = occluded_heights(std::move(heights->with_holes), head_of(*heights, options), options, occluding);
         if (!maps) return maps.error();
         report.occlusion = std::move(*maps);
     }

@@ -53,7 +53,8 @@ Result<void> prepare(const InputFile& file, const BakeFileOptions& options, Heig
 
 // Whether a stage needs all rows at once.
 bool needs_all_rows(const BakeFileOptions& options) {
-    return options.heights.fill_invalid || options.heights.deband != Deband::off || wants_occlusion(options);
+    return options.heights.fill_invalid || options.heights.deband != Deband::off ||
+           (wants_occlusion(options) && !options.tile);
 }
 
 // The rows are heights that take_heights() has cleaned.
@@ -153,7 +154,7 @@ Result<Heights> open_heights(InputFile& file, RowOrder order, const BakeFileOpti
     if (!opened) return opened.error();
     Heights heights = std::move(*opened);
     if (needs_all_rows(options)) {
-        const Result<void> filled = fill(file, execution, wants_occlusion(options), heights);
+        const Result<void> filled = fill(file, execution, wants_occlusion(options) && !options.tile, heights);
         if (!filled) return filled.error();
     }
     if (order == RowOrder::from_the_top && heights.options.wrap_y == Wrap::repeat) {

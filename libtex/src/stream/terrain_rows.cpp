@@ -39,8 +39,10 @@ bool usually_shares_border(Extent extent) {
 
 }  // namespace
 
-Result<std::unique_ptr<TerrainRows>> TerrainRows::open(InputFile& file, const BakeFileOptions& options, int reach) {
+Result<std::unique_ptr<TerrainRows>> TerrainRows::open(InputFile& file, const BakeFileOptions& options, int reach,
+                                                       TerrainMargin margin) {
     std::unique_ptr<TerrainRows> rows(new TerrainRows(file, options));
+    rows->takes_ = margin;
     Result<std::unique_ptr<TileReader>> center = TileReader::open(file, options);
     if (!center) return center.error();
     rows->center_ = std::move(*center);
@@ -77,6 +79,7 @@ Result<int> TerrainRows::margin(int right, int down, int reach) {
                          " texels, which do not fit beside " + file_.path() + " with " + std::to_string(own.width) +
                          "x" + std::to_string(own.height)};
     const int least = is_beside ? std::min(its.width, own.width) : std::min(its.height, own.height);
+    if (takes_ == TerrainMargin::where_there) reach = std::min(reach, std::max(0, least - shared_));
     if (least < reach + shared_)
         return Error{ErrorCode::bad_data, path,
                      "is too small for its terrain: a normal depends on " + std::to_string(reach) +

@@ -16,14 +16,21 @@
 
 namespace tex::inline v1 {
 
+// What a window holds of tiles that are narrower than what it wants of them.
+enum class TerrainMargin {
+    whole,        // nothing: they are too small for the terrain, which is an error
+    where_there,  // as much as there is
+};
+
 // The rows of the window, in their order: one channel, Y, floats that were cleaned as take_heights() does. Three tiles
 // are open at a time. The fields of `file` and `options` must outlive it.
 class TerrainRows final : public RowSource {
 public:
     // `reach`: the number of rows and columns around it on which a normal depends. May throw std::bad_alloc. Errors:
     // those of opening the tiles; bad_data (a neighbour has another height or width than the tile, or fewer rows or
-    // columns than `reach`).
-    static Result<std::unique_ptr<TerrainRows>> open(InputFile& file, const BakeFileOptions& options, int reach);
+    // columns than `reach`, unless it takes what is there).
+    static Result<std::unique_ptr<TerrainRows>> open(InputFile& file, const BakeFileOptions& options, int reach,
+                                                     TerrainMargin margin = TerrainMargin::whole);
 
     [[nodiscard]] const TerrainWindow& window() const { return window_; }
     // What was found in the tile itself, so far.
@@ -56,6 +63,7 @@ private:
 
     InputFile& file_;
     const BakeFileOptions& options_;
+    TerrainMargin takes_ = TerrainMargin::whole;
     TerrainWindow window_;
     std::unique_ptr<TileReader> center_;  // until its band is reached; only its description is used then
     static constexpr int kNoBand = -2;
