@@ -231,6 +231,11 @@ struct Region {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
+// How an image editor changes levels: a value c became ((c - black) / (white - black))^(1 / gamma), limited to 0 to 1.
+struct ToneCurve {
+    double black = 0.0, white = 1.0, gamma = 1.0;
+};
+
 struct Finding {
     const Rule* rule = nullptr;
     Severity severity = Severity::warning;
@@ -243,6 +248,7 @@ struct Finding {
     int column = 0, row = 0;
     // The rule tried its fix, and this is what the fix would do beside its purpose; then nobody ought to apply it.
     std::string fix_harms = {};
+    std::optional<ToneCurve> tone = {};  // what the channels went through (N313, N314)
     // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels
     // or the file; nothing if it left out no texels, either.
     std::optional<Marks> marks = {};
