@@ -285,6 +285,12 @@ void Maker::damages() {
     for (unsigned char& code : darkened.values) code = static_cast<unsigned char>(code * 3 / 5);
     png("N312-scaled-up", enlarged);
     png("N313-darkened", darkened);
+    Codes brighter = whole_codes, few = codes_of(*scale(part(128, 128), 2.0f));
+    for (unsigned char& code : brighter.values)
+        code = static_cast<unsigned char>(std::floor(255.0 * std::pow(code / 255.0, 0.8) + 0.5));
+    for (unsigned char& code : few.values) code = static_cast<unsigned char>((code + 8) / 17 * 17);
+    png("N314-levels-changed", brighter);
+    png("N315-posterised", few);
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));

@@ -125,6 +125,13 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
         .text(height_file_, "--height", "FILE",
               "the height map that the (single) input was made from, which decides whether green or red is mirrored")
         .completes = cli::Completes::files;
+    command.choice(options_.mirrored, "--mirrored", "CHANNEL", kMirroredChannelNames,
+                   "which channel is the other way round, where slopes show that green or red is");
+    command.option("--bumpiness", "B", "bake heights that stand in place of normals; white is B texel widths high",
+                   [this](const std::string& text) {
+                       options_.bumpiness = static_cast<float>(
+                           cli::parse_double(text, {.least = 1e-20, .greatest = 1e20, .of_magnitude = true}));
+                   });
     cli::Row& layout =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) { options_.checks.swizzle = cli::parse_swizzle(text); });
@@ -142,7 +149,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     command.example("repair-normals 'art/**/*_n.png' --out-dir mended", "Undoes what the texels prove.");
     command.example("repair-normals 'art/**/*_n.png' --dry-run", "What would be done, and by which angle.");
     command.example("repair-normals scene.glb -o mended.glb", "The maps of a model, and nothing else of it.");
-    command.example("repair-normals rock_n.dds -o rock_n.dds --y up --likely",
+    command.example("repair-normals rock_n.dds -o rock_n.dds --y up --mirrored green",
                     "Turns green over where it points down, in place.");
 }
 
@@ -179,10 +186,12 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
     for (const FaultLeft& fault : repaired.left) {
         const Finding& left = fault.finding;
         if (left.severity != Severity::error) continue;
-        job.raise(cli::ExitCode::findings, fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message,
-                                                       fault.certainty == RepairClass::likely ? " (likely = true "
-                                                                                                "repairs it)"
-                                                                                              : ""));
+        const std::string_view how = fault.certainty == RepairClass::likely   ? " (likely = true repairs it)"
+                                     : fault.certainty != RepairClass::choice ? ""
+                                     : left.rule->id == "N210"                ? " (bumpiness = B bakes them)"
+                                                               : " (mirrored = \"green\" or \"red\" repairs it)";
+        job.raise(cli::ExitCode::findings,
+                  fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message, how));
         break;
     }
     for (const RepairStep& step : repaired.steps) {
@@ -236,7 +245,10 @@ Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector
     RepairOptions options = options_for(output.y.value_or(YAxis::up));
     auto repaired = repair(maps.front()->name(), texture, options, execution);
     const auto turns_green = [](const RepairStep& step) { return is_about_green(*step.rule); };
-    if (!repaired || std::none_of(repaired->steps.begin(), repaired->steps.end(), turns_green)) return repaired;
+    const auto is_left = [](const FaultLeft& fault) { return is_about_green(*fault.finding.rule); };
+    if (!repaired || (std::none_of(repaired->steps.begin(), repaired->steps.end(), turns_green) &&
+                      std::none_of(repaired->left.begin(), repaired->left.end(), is_left)))
+        return repaired;
     const auto cancels = [](const Finding& finding) { return finding.rule->id == "N707"; };
     const auto model = maps.front()->read(cli::LastModel::Part::all, job.read_options);
     if (!model) return model.error();

@@ -207,6 +207,7 @@ void each_part(Texture& o, F& f) {
     f(o.x_in_grey);
     f(o.normal_encoding);
     f(o.srgb);
+    f(o.zlib);
     f(o.bumpiness_x);
     f(o.bumpiness_y);
     f(o.orientation);

@@ -17,6 +17,8 @@ namespace {
 struct Repairing {
     bool likely = false;
     py::object only = py::none(), skip = py::none();
+    std::optional<MirroredChannel> mirrored;
+    std::optional<float> bumpiness;
     Effort effort = RepairOptions{}.effort;
     MipOptions mip;
 };
@@ -26,6 +28,8 @@ void each_field(Repairing& o, F& f) {
     f("likely", o.likely);
     f("only", o.only, "Sequence[str] | None");
     f("skip", o.skip, "Sequence[str] | None");
+    f("mirrored", o.mirrored);
+    f("bumpiness", o.bumpiness);
     f("effort", o.effort);
     f("mip", o.mip);
 }
@@ -39,6 +43,8 @@ py::dict describe(const RepairStep& step) {
     facts["channel"] = step.channel;
     facts["other"] = step.other;
     facts["part"] = step.part ? py::cast(*step.part) : py::none();
+    facts["tone"] = step.tone ? py::object(py::make_tuple(step.tone->black, step.tone->white, step.tone->gamma))
+                              : py::object(py::none());
     facts["degrees"] = step.degrees;
     return facts;
 }
@@ -76,6 +82,8 @@ void add_repairs(Module& module) {
             options.likely = how.likely;
             options.only = rules_from(how.only, "only");
             options.skip = rules_from(how.skip, "skip");
+            options.mirrored = how.mirrored;
+            options.bumpiness = how.bumpiness;
             options.effort = how.effort;
             options.mip = how.mip;
             std::string file = call.has("file") ? text_from(call["file"], "file") : "";

@@ -53,6 +53,12 @@ bool is_gone(const CheckReport& report, std::string_view id) {
     });
 }
 
+// Whether a step of this kind undoes what happened to normals. Vectors can be made unit, and turned, in any picture.
+bool proves(RepairKind kind) {
+    return kind != RepairKind::bake_heights && kind != RepairKind::straighten && kind != RepairKind::fill_background &&
+           kind != RepairKind::normalize && kind != RepairKind::rebuild_levels;
+}
+
 // The angle between the normals of both base levels; 0 if one has none.
 Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution) {
     const auto base = [&](const Texture& from) -> Result<NormalMap> {
@@ -103,8 +109,8 @@ public:
         }
         for (const Finding& finding : report_.findings) {
             if (!takes_part(options_, *finding.rule)) continue;
-            const auto step = repair_of(finding, report_, options_.checks);
-            const bool was_tried = step && (options_.likely || step->certainty == RepairClass::safe);
+            const auto step = first_step(finding, report_, known());
+            const bool was_tried = step && is_allowed(*step);
             done.left.push_back({finding, step && !was_tried ? step->certainty : RepairClass::never});
         }
         done.after = std::move(report_);
@@ -153,9 +159,9 @@ private:
             if (auto taken = take_steps(done); !taken) return taken;
             const bool has_errors = std::any_of(report_.findings.begin(), report_.findings.end(),
                                                 [](const Finding& f) { return f.severity == Severity::error; });
-            // The rules must have found the other one. Vectors can be made unit in any picture.
+            // The rules must have found the other one.
             const auto proofs = std::count_if(done.steps.begin(), done.steps.end(), [](const RepairStep& s) {
-                return s.rule->id != "N214" && s.kind < RepairKind::fill_background;
+                return s.rule->id != "N214" && proves(s.kind);
             });
             const bool is_right = !has_errors && proofs > 0;
             if (is_right) return {};
@@ -177,9 +183,8 @@ private:
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const Finding* const finding = find_finding(report_, rows[k].rule);
             if (finding == nullptr || !takes_part(options_, *finding->rule) || tries_[k] == kMostStepsOfRow) continue;
-            const bool y_is_known = options_.checks.require.y.has_value() || current().y_known;
             const Finding found = *finding;
-            auto steps = steps_of(rows[k], found, y_is_known);
+            auto steps = steps_of(rows[k], found);
             if (!steps) return steps.error();
             for (RepairStep& step : *steps) {
                 if (!is_allowed(step)) continue;
@@ -199,7 +204,7 @@ private:
     }
 
     [[nodiscard]] bool is_allowed(const RepairStep& step) const {
-        return options_.likely || step.certainty == RepairClass::safe;
+        return step.certainty == RepairClass::safe || (options_.likely && step.certainty == RepairClass::likely);
     }
 
     // No step removes the finding of this rule, so it may be a false one, and what it explains may be true.
@@ -211,8 +216,13 @@ private:
         return true;
     }
 
-    Result<std::vector<RepairStep>> steps_of(const RuleRepair& row, const Finding& finding, bool y_is_known) {
-        std::vector<RepairStep> steps = steps_for(row, finding, report_, y_is_known);
+    [[nodiscard]] KnownOfMap known() const {
+        return {options_.checks.require.y.has_value() || current().y_known, options_.mirrored,
+                options_.bumpiness.has_value()};
+    }
+
+    Result<std::vector<RepairStep>> steps_of(const RuleRepair& row, const Finding& finding) {
+        std::vector<RepairStep> steps = steps_for(row, finding, report_, known());
         const bool is_taken = row.certainty == RepairClass::safe || options_.likely;
         if (row.kind != RepairKind::invert_part || steps.empty() || !is_taken) return steps;
         if (!levels_) {
@@ -243,7 +253,7 @@ private:
         }
         State state;
         if (changes_texels(step.kind)) {
-            if (auto applied = apply_step(step, options_.mip, current(), levels, execution_); !applied)
+            if (auto applied = apply_step(step, options_, current(), levels, execution_); !applied)
                 return applied.error();
             if (step.kind == RepairKind::invert && (step.rule->id == "N401" || step.rule->id == "N112")) {
                 levels.head.y_axis = *options_.checks.require.y;

@@ -99,6 +99,39 @@ const std::vector<Damage>& damages() {
          },
          false, false, true, true},
         {"BGR", exchanged(0, 2), exchanged(0, 2), false, false, true},
+        {"gamma 1.2",
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = std::pow(t[c], 1.0 / 1.2);
+         },
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = std::pow(std::max(0.0, t[c]), 1.2);
+         },
+         true, false, true},
+        {"levels to 90 %",
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = std::min(1.0, t[c] / 0.9);
+         },
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] *= 0.9;
+             t[2] = rebuilt_z(t);
+         },
+         true, false, true},
+        {"levels from 10 %",
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = std::max(0.0, (t[c] - 0.1) / 0.9);
+         },
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = 0.1 + 0.9 * t[c];
+         },
+         true, false, true},
+        {"darkened to 0.8",
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] *= 0.8;
+         },
+         [](double* t, std::size_t) {
+             for (int c = 0; c < 3; ++c) t[c] = std::min(1.0, t[c] / 0.8);
+         },
+         false, false, true},
         {"z from 0 to 1", [](double* t, std::size_t) { t[2] = std::max(0.0, 2.0 * t[2] - 1.0); },
          [](double* t, std::size_t) { t[2] = 0.5 + 0.5 * t[2]; }, false, false, true},
         {"blue is 1", [](double* t, std::size_t) { t[2] = 1.0; }, [](double* t, std::size_t) { t[2] = rebuilt_z(t); },
@@ -275,7 +308,10 @@ void judge(const Codes& codes, const std::string& file, bool held_out, std::vect
             if (angle_to(undamaged->levels.front(), texture) < kVisible) continue;
             RepairOptions options;
             options.likely = damage.likely;
-            if (damage.needs_y) options.checks.require.y = plain->y.y;
+            if (damage.needs_y) {
+                options.checks.require.y = plain->y.y;
+                if (!damage.needs_heights) options.mirrored = MirroredChannel::green;
+            }
             if (damage.needs_heights) options.checks.height = &*heights;
             const auto repaired = repair(file, texture, options);
             if (!repaired) std::exit(1);

@@ -271,10 +271,13 @@ TEST_F(ModelOutputs, RepairsChangeDamagedMapsAlone) {
 
 TEST_F(ModelOutputs, RepairsLeaveWhatTangentsMakeUpFor) {
     write_model_of("agree.gltf", {"maps/down.png"}, 1.0f);
-    EXPECT_NE(does("repair-normals agree.gltf --dry-run --likely").out.find("N401"), std::string::npos);
+    EXPECT_NE(does("repair-normals agree.gltf --dry-run --mirrored green").out.find("N401"), std::string::npos);
     write_model_of("cancel.gltf", {"maps/down.png"}, -1.0f);
     does("repair-normals cancel.gltf -o b.gltf --likely > said");
     same("b.gltf", "cancel.gltf");
+    // Nor do they guess which channel is the other way round.
+    EXPECT_NE(does("repair-normals agree.gltf -o c.gltf --likely").out.find("--mirrored red"), std::string::npos);
+    same("c.gltf", "agree.gltf");
 }
 
 // What check-normals prints about a model mends it.

@@ -165,12 +165,89 @@ TEST(Repair, TurnsGreenOverAndStatesIt) {
     RepairOptions options;
     options.checks.require.y = YAxis::up;
     options.likely = true;
-    const Repaired done = repaired(reference::texture_of(reference::flip_green(clean())), options);
+    const Texture flipped = reference::texture_of(reference::flip_green(clean()));
+    // Slopes alone do not show whether green or red is the other way round.
+    const Repaired left = repaired(flipped, options);
+    EXPECT_FALSE(left.texture);
+    ASSERT_FALSE(left.left.empty());
+    EXPECT_EQ(left.left.front().certainty, RepairClass::choice);
+    options.mirrored = MirroredChannel::green;
+    const Repaired done = repaired(flipped, options);
     EXPECT_EQ(plan_of(done), "N401 invert G");
+    EXPECT_EQ(done.steps.front().certainty, RepairClass::safe);
     ASSERT_TRUE(done.texture);
     EXPECT_EQ(codes_in(*done.texture), clean().values);
     EXPECT_TRUE(done.texture->y_known);
     EXPECT_EQ(done.texture->y_axis, YAxis::up);
+}
+
+TEST(Repair, TurnsRedOverInAPictureThatWasMirrored) {
+    Codes mirrored = clean(), red = clean();
+    for (int k = 0; k < red.extent.width * red.extent.height; ++k) {
+        const int i = k % red.extent.width, j = k / red.extent.width;
+        red.at(i, j, 0) = static_cast<unsigned char>(255 - clean().at(i, j, 0));
+        for (int c = 0; c < 3; ++c) mirrored.at(i, j, c) = clean().at(red.extent.width - 1 - i, j, c);
+    }
+    RepairOptions options;
+    options.checks.require.y = YAxis::up;
+    options.mirrored = MirroredChannel::red;
+    const Repaired done = repaired(reference::texture_of(red), options);
+    EXPECT_EQ(plan_of(done), "N401 invert R");
+    ASSERT_TRUE(done.texture);
+    EXPECT_EQ(codes_in(*done.texture), clean().values);
+    EXPECT_EQ(plan_of(repaired(reference::texture_of(mirrored), options)), "N401 invert R");
+}
+
+// What image editors do, in double, and then rounded to 8 bits.
+TEST(Repair, TakesChangesOfLevelsBack) {
+    const auto changed = [](auto&& by) {
+        Codes codes = clean();
+        for (unsigned char& code : codes.values)
+            code = static_cast<unsigned char>(std::floor(std::clamp(by(code / 255.0), 0.0, 1.0) * 255.0 + 0.5));
+        return reference::texture_of(codes);
+    };
+    const Texture plain = reference::texture_of(clean());
+    const auto expect = [&](const Texture& damaged, const std::string& plan, double most) {
+        RepairOptions options;
+        options.likely = true;
+        const Repaired done = repaired(damaged, options);
+        ASSERT_TRUE(done.texture) << plan;
+        EXPECT_EQ(plan_of(done).substr(0, plan.size()), plan);
+        EXPECT_LT(angle(*done.texture, plain), most) << plan_of(done);
+        EXPECT_GT(angle(damaged, plain), 2 * most);
+    };
+    expect(changed([](double c) { return std::pow(c, 1.0 / 1.2); }), "N314 take gamma 1.", 0.6);
+    expect(changed([](double c) { return std::pow(c, 1.25); }), "N314 take gamma 0.8", 0.6);
+    expect(changed([](double c) { return (c - 0.1) / 0.9; }), "N314 take levels from ", 1.0);
+    expect(changed([](double c) { return c / 0.9; }), "N314 take levels from ", 1.0);
+    expect(changed([](double c) { return 0.6 * c; }), "N313 divide by 0.6", 0.6);
+    RepairOptions likely;
+    likely.likely = true;
+    const Repaired stretched = repaired(changed([](double c) { return (c - 0.04) / 0.92; }), likely);
+    EXPECT_EQ(plan_of(stretched).substr(0, 10), "N201 take ") << plan_of(stretched);
+}
+
+TEST(Repair, BakesHeightsWhoseBumpinessIsGiven) {
+    Codes grey = clean();
+    for (int k = 0; k < grey.extent.width * grey.extent.height; ++k) {
+        const int i = k % grey.extent.width, j = k / grey.extent.width;
+        for (int c = 0; c < 3; ++c)
+            grey.at(i, j, c) = static_cast<unsigned char>(128.0 + 90.0 * std::sin(0.1 * i) * std::cos(0.07 * j));
+    }
+    const Texture heights = reference::texture_of(grey);
+    const Repaired left = repaired(heights);
+    ASSERT_FALSE(left.left.empty());
+    EXPECT_EQ(left.left.front().certainty, RepairClass::choice);
+    RepairOptions options;
+    options.bumpiness = 20.0f;
+    const Repaired done = repaired(heights, options);
+    ASSERT_TRUE(done.texture);
+    EXPECT_EQ(plan_of(done), "N210 bake normals from the heights");
+    HeightField field{Plane<float>(grey.extent), 20.0f, 20.0f, Wrap::repeat, Wrap::repeat};
+    for (int k = 0; k < grey.extent.width * grey.extent.height; ++k)
+        field.height.at(k % grey.extent.width, k / grey.extent.width) =
+            static_cast<float>(grey.at(k % grey.extent.width, k / grey.extent.width, 0)) / 255.0f;
+    EXPECT_EQ(codes_in(*done.texture), reference::codes_of(*bake(field)).values);
 }
 
 TEST(Repair, TurnsGreenOverInOneHalf) {
@@ -204,6 +281,7 @@ TEST(Repair, TwoDamagesGoInTheRightOrder) {
     RepairOptions options;
     options.likely = true;
     options.checks.require.y = YAxis::up;
+    options.mirrored = MirroredChannel::green;
     const Repaired done = repaired(turned, options);
     ASSERT_TRUE(done.texture);
     EXPECT_EQ(plan_of(done).substr(0, plan_of(done).find(", N201")), "N302 decode with the sRGB curve, N401 invert G");
@@ -304,7 +382,7 @@ TEST(Repair, RefusesWhatItCannotDo) {
     const Repaired left = repaired(grey);
     EXPECT_FALSE(left.texture);
     EXPECT_TRUE(left.has_errors());
-    EXPECT_EQ(left.left.front().certainty, RepairClass::never);
+    EXPECT_EQ(left.left.front().certainty, RepairClass::choice);
     int calls = 0;
     const Execution cancelled{1, [&](double) { return ++calls < 2; }};
     const auto stopped = repair("map", reference::texture_of(reference::srgb_encode(clean())), {}, cancelled);

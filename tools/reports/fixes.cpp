@@ -287,8 +287,8 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
             true};
     if (is_about_mirrors(id) && !(report.pair && report.pair->decides())) {
         fix.advice =
-            "If dents become bumps, red is mirrored instead, as in a picture that was flipped: correct the "
-            "image in the program that made it";
+            "If dents become bumps, red is mirrored instead, as in a picture that was flipped: "
+            "repair-normals --mirrored red writes the model with red inverted";
     }
     return fix;
 }
@@ -317,6 +317,8 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
         replace_word(text, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
     }
     if (!text.starts_with(kRepair)) return {};
+    if (step->certainty == RepairClass::likely && text.find("--likely") == std::string::npos)
+        text.insert(kRepair.size(), " --likely");
     const std::optional<Container> own = container_of(report.file);
     const bool is_kept = own && *own != Container::jpeg;
     replace_word(text, "FIXED", "FIXED" + (model.empty() ? extension_of(is_kept ? *own : Container::png) : model));

@@ -37,17 +37,22 @@ Json step_json(const RepairStep& step) {
     return json;
 }
 
+// Slopes alone do not show which of green and red is mirrored; heights do.
+std::string_view what_repairs(const FaultLeft& fault) {
+    if (fault.certainty == RepairClass::likely) return "; --likely repairs it";
+    if (fault.certainty != RepairClass::choice) return "";
+    if (fault.finding.rule->id == "N210") return "; if these are heights, --bumpiness B bakes them";
+    return "; --mirrored green repairs it if the map is of the other convention, and --mirrored red if the picture was "
+           "mirrored from left to right; --height FILE shows which";
+}
+
 }  // namespace
 
 std::string repairs_text(const std::string& name, const Repaired& repaired) {
     std::string text;
     for (const RepairStep& step : repaired.steps) {
-        // Slopes alone do not tell which of green and red is mirrored; heights do, and then the repair is safe.
-        const bool is_doubtful =
-            step.certainty == RepairClass::likely && (step.rule->id == "N401" || step.rule->id == "N404");
-        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees{}\n", printable(name), step.rule->id, step.rule->name,
-                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees,
-                            is_doubtful ? "; wrong if red is mirrored instead, which --height FILE would show" : "");
+        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees\n", printable(name), step.rule->id, step.rule->name,
+                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees);
     }
     for (const FaultLeft& fault : repaired.left) {
         const Finding& finding = fault.finding;
@@ -55,8 +60,7 @@ std::string repairs_text(const std::string& name, const Repaired& repaired) {
         std::string statement = statement_of(finding);
         statement.pop_back();
         text += fmt::format("{}: left: {} {} {}: {}{}\n", printable(name), name_of(kSeverityNames, finding.severity),
-                            finding.rule->id, finding.rule->name, printable(statement),
-                            fault.certainty == RepairClass::likely ? "; --likely repairs it" : "");
+                            finding.rule->id, finding.rule->name, printable(statement), what_repairs(fault));
     }
     return text;
 }

@@ -34,7 +34,8 @@ constexpr Container kThreeTypes[] = {png, jpeg, webp, tga, tiff, exr, ktx2};
 constexpr Container kThreePackedTypes[] = {ktx2};
 constexpr Encoding kThreePackedEncodings[] = {bc5, eac_rg11, rg8, rgba8};
 constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f};
-// FORMAT_MAP in KTX2Loader.js has no formats of three channels, and none of 16 bits that are normalised.
+// FORMAT_MAP in KTX2Loader.js has no formats of three channels, and none of 16 bits that are normalised; of
+// supercompression it takes BasisLZ and Zstandard.
 constexpr Encoding kThreeKtx2[] = {rgba8, rgba16f, rgba32f, bc7, uastc};
 // Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal.
 constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga};
@@ -87,7 +88,7 @@ constexpr Engine kEngines[] = {
     {"three", png, rgb8, YAxis::up, false, "",
      "TextureLoader reads PNG, and the renderer builds the levels. Releases before 2026 read z from B, so textures of "
      "two channels do not work in them.",
-     kThreeTypes, kThreeEncodings, RoughnessUse::green, kThreeKtx2},
+     kThreeTypes, kThreeEncodings, RoughnessUse::green, kThreeKtx2, false},
     // Drawn by tests/engines, which shows where the picture lies upside down. isPackedRGFormat() in WebGLPrograms.js:
     // RGFormat, RG11_EAC_Format and RED_GREEN_RGTC2_Format; for WebGPURenderer
     // NormalMapNode.js (three.js pull requests 31695, 32308, 31713). Neither knows ASTC or signed formats as packed.
@@ -95,7 +96,7 @@ constexpr Engine kEngines[] = {
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
      "for desktop GPUs, --format eac-rg11 for others. On geometry of three.js, repeat.y and normalScale.y are -1. The "
      "core of glTF does not allow such files in a model (issue 2602 of glTF).",
-     kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green},
+     kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green, {}, false},
     // Drawn by tests/engines: in the default, left-handed scene, both x and y of +Y maps come out the other way, and of
     // -Y maps x does.
     {"babylon", png, rgb8, YAxis::up, false, "",
@@ -177,7 +178,8 @@ EngineNeeds needs_of(const Engine& engine) {
             {engine.types.begin(), engine.types.end()},
             {engine.encodings.begin(), engine.encodings.end()},
             engine.has_mips,
-            {engine.in_ktx2.begin(), engine.in_ktx2.end()}};
+            {engine.in_ktx2.begin(), engine.in_ktx2.end()},
+            engine.inflates_zlib};
 }
 
 std::vector<Word> engine_words() {

@@ -36,6 +36,7 @@ struct Engine {
     std::span<const Encoding> encodings;
     RoughnessUse roughness = RoughnessUse::any;
     std::span<const Encoding> in_ktx2 = {};  // instead of encodings, in KTX2
+    bool inflates_zlib = true;               // of KTX2
 };
 
 [[nodiscard]] std::span<const Engine> engines();

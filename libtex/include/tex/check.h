@@ -139,6 +139,7 @@ struct EngineNeeds {
     std::vector<Encoding> encodings;     // that it reads as normals
     bool levels = false;                 // it builds no levels; nor does any engine for block formats
     std::vector<Encoding> in_ktx2 = {};  // those of KTX2, if it reads others there
+    bool inflates_zlib = true;           // of KTX2; Zstandard is read by all that read KTX2
 };
 
 // What a project requires of its files. By default only the sides are limited, to 16384 texels as in Direct3D 12.
@@ -234,6 +235,11 @@ struct Region {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
+// How an image editor changes levels: a value c became ((c - black) / (white - black))^(1 / gamma), limited to 0 to 1.
+struct ToneCurve {
+    double black = 0.0, white = 1.0, gamma = 1.0;
+};
+
 struct Finding {
     const Rule* rule = nullptr;
     Severity severity = Severity::warning;
@@ -246,6 +252,7 @@ struct Finding {
     int column = 0, row = 0;
     // The rule tried its fix, and this is what the fix would do beside its purpose; then nobody ought to apply it.
     std::string fix_harms = {};
+    std::optional<ToneCurve> tone = {};  // what the channels went through (N313, N314)
     // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels
     // or the file; nothing if it left out no texels, either.
     std::optional<Marks> marks = {};

@@ -320,6 +320,9 @@ struct Texture {
     // The file declares its colours as sRGB. That is a mistake for normals; the bytes are used as they are.
     bool srgb = false;
 
+    // The file is KTX2 whose levels are compressed with zlib, which few programs but Khronos' own inflate.
+    bool zlib = false;
+
     // For heights: the strengths with which bake() makes the normals again from which they were integrated. 0: not
     // known.
     float bumpiness_x = 0.0f, bumpiness_y = 0.0f;

@@ -22,12 +22,21 @@ namespace tex::inline v1 {
 // Undoes what the rules find, in the one right order, and runs the rules again after each step.
 
 // How certain the repair of a fault is.
-enum class RepairClass { safe, likely, never };
+enum class RepairClass { safe, likely, choice, never };
 
 inline constexpr Named<RepairClass> kRepairClassNames[] = {
     {RepairClass::safe, "safe", "the texels prove the fault, and undoing it is exact but for rounding"},
     {RepairClass::likely, "likely", "the texels leave another explanation, or other data are possible"},
+    {RepairClass::choice, "choice", "the texels do not show which of several repairs is right; an option says so"},
     {RepairClass::never, "never", "only its author can mend it"},
+};
+
+// Which channel is the other way round, where the slopes show that one of the two is (N401, N404).
+enum class MirroredChannel { green, red };
+
+inline constexpr Named<MirroredChannel> kMirroredChannelNames[] = {
+    {MirroredChannel::green, "green", "green, as in maps of the other convention"},
+    {MirroredChannel::red, "red", "red, as in a picture that was mirrored from left to right"},
 };
 
 // What a step does. "Channels" are those that hold x, y and z.
@@ -37,12 +46,15 @@ enum class RepairKind {
     divide_by_alpha,
     encode_srgb,
     decode_srgb,
+    undo_tone,
     exchange,
     invert,
     stretch_z,
     rebuild_z,
     invert_part,
     state_y,
+    bake_heights,
+    straighten,
     fill_background,
     normalize,
     rebuild_levels,
@@ -54,12 +66,15 @@ inline constexpr Named<RepairKind> kRepairKindNames[] = {
     {RepairKind::divide_by_alpha, "divide-by-alpha", "divide by alpha"},
     {RepairKind::encode_srgb, "encode-srgb", "encode with the sRGB curve"},
     {RepairKind::decode_srgb, "decode-srgb", "decode with the sRGB curve"},
+    {RepairKind::undo_tone, "undo-tone", "take a change of levels back"},
     {RepairKind::exchange, "exchange", "exchange two channels"},
     {RepairKind::invert, "invert", "invert a channel"},
     {RepairKind::stretch_z, "stretch-z", "store z as (z + 1) / 2"},
     {RepairKind::rebuild_z, "rebuild-z", "rebuild z from x and y"},
     {RepairKind::invert_part, "invert-part", "invert green in a part of the map"},
     {RepairKind::state_y, "state-y", "state the direction of green that the texels show"},
+    {RepairKind::bake_heights, "bake-heights", "bake normals from the heights"},
+    {RepairKind::straighten, "straighten", "turn all vectors so that their mean points straight out"},
     {RepairKind::fill_background, "fill-background", "fill the background with the nearest normals"},
     {RepairKind::normalize, "normalize", "make vectors unit"},
     {RepairKind::rebuild_levels, "rebuild-levels", "build the smaller levels from the base level"},
@@ -75,8 +90,9 @@ struct RuleRepair {
 // All of them, in the order in which they are applied. Steps that say how bytes are read come first, then those of
 // channels, of directions, of vectors, of levels. N308 has two rows: a channel that holds z in the wrong place is safe;
 // x and y exchanged is likely, and is undone only if the direction of green is required or stated by the file. N401 and
-// N404 are safe if the heights decide. N112 inverts green as the file states it, which is safe; if the
-// texels show that green is as required, the statement changes instead, which is likely.
+// N404 are safe if the heights or RepairOptions::mirrored decide, and N210 if RepairOptions::bumpiness is given;
+// without these they are a choice, which repair() does not make. N112 inverts green as the file states it, which is
+// safe; if the texels show that green is as required, the statement changes instead, which is likely.
 [[nodiscard]] TEX_API std::span<const RuleRepair> rule_repairs();
 
 // The lowest class of a rule's rows; never if it has none.
@@ -87,9 +103,10 @@ struct RepairStep {
     const Rule* rule = nullptr;  // whose finding it removes
     RepairKind kind = RepairKind::normalize;
     RepairClass certainty = RepairClass::safe;
-    int channel = -1, other = -1;     // of exchange and invert: 0 to 3 for R, G, B, A
-    std::optional<Region> part = {};  // of invert_part
-    double degrees = 0.0;             // the mean angle by which it changes the normals of the base level
+    int channel = -1, other = -1;        // of exchange and invert: 0 to 3 for R, G, B, A
+    std::optional<Region> part = {};     // of invert_part
+    std::optional<ToneCurve> tone = {};  // of undo_tone
+    double degrees = 0.0;                // the mean angle by which it changes the normals of the base level
 };
 
 // "exchange R and B", "decode with the sRGB curve".
@@ -100,10 +117,12 @@ struct RepairStep {
                                                           const CheckOptions& checks = {});
 
 struct RepairOptions {
-    CheckOptions checks = {};              // `mesh` and `model` must be null
-    bool likely = false;                   // likely repairs, too
-    std::vector<std::string> only = {};    // ids or names of rules; empty: all
-    std::vector<std::string> skip = {};    // takes precedence over `only`
+    CheckOptions checks = {};                      // `mesh` and `model` must be null
+    bool likely = false;                           // likely repairs, too
+    std::vector<std::string> only = {};            // ids or names of rules; empty: all
+    std::vector<std::string> skip = {};            // takes precedence over `only`
+    std::optional<MirroredChannel> mirrored = {};  // which channel N401 and N404 are about; none: the heights decide
+    std::optional<float> bumpiness = {};   // bakes heights in place of normals (N210): the height of white in texels
     Effort effort = PackOptions{}.effort;  // of block encoders
     MipOptions mip = {};                   // of levels that are built
 };
@@ -114,7 +133,8 @@ struct RepairOptions {
 // A fault that is left.
 struct FaultLeft {
     Finding finding;
-    RepairClass certainty = RepairClass::never;  // likely: RepairOptions::likely would repair it
+    // likely: RepairOptions::likely would repair it; choice: RepairOptions::mirrored or bumpiness would.
+    RepairClass certainty = RepairClass::never;
 };
 
 struct Repaired {
@@ -139,6 +159,7 @@ struct Repaired {
 //     encode_srgb        c' = 12.92 c up to 0.0031308, 1.055 c^(1/2.4) - 0.055 above (IEC 61966-2-1)
 //     decode_srgb        its inverse
 //     divide_by_alpha    c' = min(c / alpha, 1); where alpha is 0, the vector is lost and becomes (0, 0, 1)
+//     undo_tone          c' = black + (white - black) c^gamma, of RepairStep::tone
 //     invert             c' = 1 - c, or -c if values are signed
 //     stretch_z          c' = (c + 1) / 2
 //

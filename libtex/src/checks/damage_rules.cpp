@@ -12,12 +12,15 @@
 #include <vector>
 
 #include "checks/centre.h"
+#include "checks/curve_rules.h"
 #include "checks/grid.h"
 #include "checks/jpeg.h"
 #include "checks/lattice.h"
+#include "checks/lengths.h"
 #include "checks/scaled.h"
 #include "checks/seam.h"
 #include "checks/thresholds.h"
+#include "checks/tone.h"
 #include "rows/border_slope.h"
 #include "rows/codecs.h"
 #include "threads/parallel.h"
@@ -30,10 +33,7 @@ constexpr double kBlockRatio = 2.0;
 constexpr double kBlockExcess = 2.0 / 255.0;  // half a code of DXT5nm's green (6 bits): the effect of rounding alone
 constexpr double kJpegElsewhere = 0.5;        // of the strength at the blocks of a JPEG
 constexpr double kJpegLead = 1.05;            // grid_lead(8): of maps enlarged by 2 or 4 about 1
-constexpr double kOffCentre = 0.03;
-constexpr double kLeastDarkened = 0.94;      // nearer to 1, flat maps with short vectors look alike
-constexpr double kUnitAfterDivision = 0.05;  // the mean error of the lengths
-constexpr int kLeastTurnedSide = 64;         // smaller maps, as pixel art, seem exchanged by chance
+constexpr int kLeastTurnedSide = 64;          // smaller maps, as pixel art, seem exchanged by chance
 constexpr int kLatticeTeeth = 6;
 constexpr double kLatticeUneven = 0.25;
 constexpr double kAboveAlphaShare = 0.002;
@@ -41,60 +41,6 @@ constexpr double kAlphaCorrelation = 0.9;
 constexpr double kHalfAlphaShare = 0.01;
 constexpr double kExchangedMean = 0.4;
 constexpr double kExchangedZ = 0.2;
-
-// The channel of z, or blue where no channel was taken for z, because its values do not fit as they are stored.
-int channel_like_z(const Stored& stored) {
-    if (stored.has_z()) return stored.channel(Component::z);
-    const bool is_free = stored.channel(Component::x) == 0 && stored.channel(Component::y) == 1;
-    return is_free && stored.image->planes.size() >= 3 ? 2 : -1;
-}
-
-// Calls `visit` with the stored values of x, y and z of every 7th sampled texel, and its column and row.
-template <class Visit>
-void visit_samples(const Stored& stored, Visit&& visit) {
-    constexpr int kStep = 7;
-    const int channels[3] = {stored.channel(Component::x), stored.channel(Component::y), channel_like_z(stored)};
-    for (const Rect& window : sample_windows(stored.extent())) {
-        for (int k = 0; k < window.width * window.height; k += kStep) {
-            const int i = window.x + k % window.width, j = window.y + k / window.width;
-            double c[3];
-            for (std::size_t n = 0; n < 3; ++n)
-                c[n] = stored.image->planes[static_cast<std::size_t>(channels[n])].at(i, j);
-            visit(c, i, j);
-        }
-    }
-}
-
-// The mean of |length - 1| over these texels, after `restore` is applied to the values.
-template <class Restore>
-double length_error(const Stored& stored, Restore&& restore) {
-    double sum = 0.0, count = 0.0;
-    visit_samples(stored, [&](const double(&c)[3], int i, int j) {
-        double square = 0.0;
-        for (const double value : c) {
-            const double n = 2.0 * restore(value, i, j) - 1.0;
-            square += n * n;
-        }
-        if (!(square < 100.0)) return;
-        sum += std::abs(std::sqrt(square) - 1.0);
-        count += 1.0;
-    });
-    return count > 0.0 ? sum / count : 0.0;
-}
-
-// The number by which most vectors are unit vectors if their values are divided by it: |2 c / f - 1| = 1.
-double unit_factor(const Stored& stored) {
-    std::vector<double> factors;
-    visit_samples(stored, [&](const double(&c)[3], int, int) {
-        const double sum = c[0] + c[1] + c[2], squares = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-        const double root = sum * sum - 2.0 * squares;
-        if (root >= 0.0 && sum > 0.0) factors.push_back(2.0 * squares / (sum + std::sqrt(root)));
-    });
-    if (factors.empty()) return 1.0;
-    const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
-    std::nth_element(factors.begin(), middle, factors.end());
-    return *middle;
-}
 
 // What takes long to measure. A member has its default value if no rule asks for it.
 struct Traces {
@@ -128,49 +74,6 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
     const Execution silent = context.execution.quiet();
     return parallel_for(silent, static_cast<int>(measures.size()), 1,
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
-}
-
-// All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then dividing
-// by it makes the vectors unit vectors, and x and y centre on half of it, not on the middle, on which those of maps
-// with short vectors do. The curve of sRGB moves the centre as well, but leaves 1 where it is. Returns whether it was
-// found.
-bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
-    if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
-    const double factor = unit_factor(context.stored);
-    if (factor > kLeastDarkened || centre.distance(factor / 2.0) > centre.distance(0.5) / 2.0) return false;
-    const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
-    const double decoded =
-        length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
-    const double divided = length_error(context.stored, [&](double c, int, int) { return c / factor; });
-    if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
-    Finding& finding =
-        findings.add("N313", "vectors are unit vectors if all channels are divided by " + decimal(factor, 2) +
-                                 "; x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
-                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
-    finding.figure = factor;
-    finding.unit = "ratio";
-    finding.confidence = 0.99;
-    return true;
-}
-
-void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
-    if (context.stored.is_signed || check_darkened(context, centre, findings)) return;
-    const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
-    const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
-    if (!dark && !light) return;
-    if (context.stored.has_z()) {
-        const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
-        const double restored = length_error(context.stored, [&](double c, int, int) {
-            return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
-        });
-        if (restored >= as_stored) return;
-    }
-    Finding& finding =
-        findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
-                                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
-    finding.figure = (centre.x + centre.y) / 2.0;
-    finding.unit = "of full scale";
-    finding.confidence = 0.99;
 }
 
 // Whether x and y centre on half of alpha where it is neither 0 nor 1. In LabPBR, blue is occlusion and may follow the
@@ -316,6 +219,20 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
         add("N304", "steps between 8x8 blocks are " + times(ratio) + " those inside", ratio, "ratio");
 }
 
+// Pictures of 8 bits alone: what was rounded so and stored with more bits has the same values.
+void check_posterised(const CheckContext& context, Findings& findings) {
+    const FormatInfo info = format_info(context.texture.format);
+    const bool is_8_bits = !info.has_blocks() && info.sample == SampleKind::unorm && info.bits == 8;
+    if (!is_8_bits || !findings.wants("N315")) return;
+    const int levels = few_levels(context.stored);
+    if (levels == 0) return;
+    Finding& finding = findings.add("N315", "x and y take " + std::to_string(levels) +
+                                                " values at most, which lie 4 codes or more from each other");
+    finding.figure = levels;
+    finding.unit = "values";
+    finding.confidence = 0.95;
+}
+
 void check_banding(const Lattice& lattice, Findings& findings) {
     if (lattice.strength < thresholds::kLatticeStrength || lattice.teeth < kLatticeTeeth) return;
     if (lattice.uneven < kLatticeUneven) return;
@@ -387,6 +304,7 @@ Result<void> check_damage_rules(const CheckContext& context, Findings& findings)
     check_exchanged(context, findings);
     check_blocks(context, traces, findings);
     check_banding(traces.lattice, findings);
+    check_posterised(context, findings);
     return {};
 }
 

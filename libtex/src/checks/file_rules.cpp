@@ -107,6 +107,8 @@ void check_engine(const CheckContext& context, const EngineNeeds& needs, Finding
         reasons.push_back("does not read normals from " + format_text(texture, swizzle) + " but from " +
                           names_of(encodings, kEncodingNames));
     }
+    if (texture.zlib && !needs.inflates_zlib)
+        reasons.emplace_back("does not read KTX2 that zlib compressed, but Zstandard (--supercompress zstd)");
     // Engines treat floats as they treat other pictures.
     if (is_read && context.stored.is_signed && format_info(texture.format).sample == SampleKind::floating)
         reasons.emplace_back("decodes 2c - 1, and the file holds x, y and z themselves, from -1 to 1");

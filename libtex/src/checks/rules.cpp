@@ -247,9 +247,20 @@ constexpr Rule kTextureRules[] = {
      "Bake the map at this size, or use the smaller one. Pixel art is meant to be so.", ""},
     {"N313", "darkened", damage, error, true, "All channels were multiplied by the same number.",
      "An opacity below 1 that was flattened on black does this, and programs that darken a picture. All vectors "
-     "then lean to the lower left. A bit is lost where half is left.",
-     "Export the map again at full opacity, without a change of brightness.",
+     "then lean to the lower left. A bit is lost where half is left: export the map again at full opacity if you have "
+     "its source.",
+     "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
+    {"N314", "levels-changed", damage, error, true, "Gamma, brightness or contrast were changed.",
+     "x and y do not centre on the middle, and one curve for all channels, gamma or levels, brings them back and makes "
+     "z fit x and y. Image editors change levels so, and viewers that write what they show. Flat areas lean then. "
+     "Export the map again without it if you have its source: taking the curve back leaves coarser steps.",
+     "repair-normals FILE -o FIXED",
+     "N201 N202 N205 N207 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
+    {"N315", "posterised", damage, note, true, "x and y take few values.",
+     "The picture was reduced to few colours: posterised, or stored with 4 or 5 bits a channel. Smooth surfaces show "
+     "facets in reflections. Nothing brings the values between back.",
+     "Export the map again with 8 bits or more. Pixel art is meant to be so.", "N201 N305"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green or red points the other way than required.",

@@ -7,7 +7,9 @@
 #include <cstdint>
 
 #include "checks/background_fill.h"
+#include "checks/centre.h"
 #include "checks/context.h"
+#include "checks/tone.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -23,6 +25,18 @@ constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
+
+// Levels that were stretched on both sides alike leave x and y on the middle; z was cut off, and shows how far.
+void find_contrast_of(const CheckContext& context, Finding& finding) {
+    const Stored& stored = context.stored;
+    if (!stored.has_z() || stored.is_signed || context.kind != Kind::normals) return;
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const auto fit = find_contrast(stored, measure_centre(stored, background), background);
+    if (!fit) return;
+    finding.tone = fit->curve;
+    finding.message += "; z fits x and y if a contrast of " + decimal(1.0 / (fit->curve.white - fit->curve.black), 2) +
+                       " is taken back";
+}
 
 void check_lengths(const CheckContext& context, Findings& findings) {
     const TexelCounts& counts = context.counts;
@@ -41,8 +55,10 @@ void check_lengths(const CheckContext& context, Findings& findings) {
                         " are off unit length by more than two codes (mean length " + decimal(counts.mean_length, 3) +
                             ", " + decimal(static_cast<double>(counts.min_length), 2) + " to " +
                             decimal(static_cast<double>(counts.max_length), 2) + ")");
-        if (is_stretched)
+        if (is_stretched) {
             finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
+            find_contrast_of(context, finding);
+        }
     }
     if (counts.share(Property::z_below) > kBelowShare)
         add_counted(context, findings, "N202", Property::z_below, " have z below zero");

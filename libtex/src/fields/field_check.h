@@ -54,6 +54,10 @@ public:
         found(check_known(prefix_ + name, words, value));
     }
     template <class T, class E, std::size_t N>
+    void operator()(const char* name, const std::optional<T>& value, const Named<E> (&words)[N]) {
+        if (value) (*this)(name, *value, words);
+    }
+    template <class T, class E, std::size_t N>
     void operator()(const char* name, Axes<T> value, const Named<E> (&words)[N]) {
         found(check_known(prefix_ + name + "_x", words, value.x));
         found(check_known(prefix_ + name + "_y", words, value.y));

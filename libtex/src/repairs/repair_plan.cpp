@@ -8,6 +8,8 @@
 
 #include <tex/format.h>
 
+#include "checks/findings.h"
+
 namespace tex::inline v1 {
 namespace {
 
@@ -22,6 +24,8 @@ constexpr RuleRepair kRepairs[] = {
     {"N303", safe, divide_by_alpha},
     {"N301", safe, encode_srgb},
     {"N302", safe, decode_srgb},
+    {"N313", safe, undo_tone},
+    {"N314", safe, undo_tone},
     // Which channel holds what.
     {"N308", safe, exchange},
     {"N308", likely, exchange},
@@ -30,11 +34,14 @@ constexpr RuleRepair kRepairs[] = {
     {"N209", safe, rebuild_z},
     // Directions.
     {"N402", likely, invert_part},
-    {"N401", likely, invert},
-    {"N404", likely, state_y},
+    {"N401", choice, invert},
+    {"N404", choice, state_y},
     {"N112", safe, invert},
+    // What are no normals yet.
+    {"N210", choice, bake_heights},
     // Vectors.
     {"N215", likely, fill_background},
+    {"N207", likely, straighten},
     {"N205", likely, normalize},
     {"N201", likely, normalize},
     // Levels, which follow from all of the above.
@@ -70,6 +77,19 @@ std::vector<RepairStep> exchanges(const RepairStep& step, const Finding& finding
     return steps;
 }
 
+constexpr double kSurely = 0.95;  // Finding::confidence of a tone
+
+bool has_rule(const CheckReport& report, std::string_view id) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [id](const Finding& finding) { return finding.rule->id == id; });
+}
+
+std::string tone_text(const ToneCurve& tone) {
+    if (tone.gamma != 1.0) return "take gamma " + decimal(tone.gamma, 3) + " back";
+    if (tone.black == 0.0 && tone.white > 1.0) return "divide by " + decimal(1.0 / tone.white, 3);
+    return "take levels from " + decimal(100.0 * tone.black, 1) + " % to " + decimal(100.0 * tone.white, 1) + " % back";
+}
+
 }  // namespace
 
 std::span<const RuleRepair> rule_repairs() { return kRepairs; }
@@ -86,6 +106,7 @@ std::string text_of(const RepairStep& step) {
     switch (step.kind) {
         case exchange: return "exchange " + letter(step.channel) + " and " + letter(step.other);
         case invert: return "invert " + letter(step.channel);
+        case undo_tone: return step.tone ? tone_text(*step.tone) : std::string();
         default: break;
     }
     for (const Named<RepairKind>& row : kRepairKindNames) {
@@ -95,26 +116,32 @@ std::string text_of(const RepairStep& step) {
 }
 
 std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding, const CheckReport& report,
-                                  bool y_is_known) {
+                                  const KnownOfMap& known) {
     RepairStep step{finding.rule, row.kind, row.certainty};
+    if (row.kind == bake_heights) {
+        if (known.bumpiness) step.certainty = safe;
+        return {step};
+    }
     const int x = channel_of(report.swizzle, Component::x), y = channel_of(report.swizzle, Component::y);
     const int z = channel_of(report.swizzle, Component::z);
     if (x < 0 || y < 0 || !finding.fix_harms.empty()) return {};
     const bool by_heights = report.pair && report.pair->decides();
+    const bool is_decided = by_heights || known.mirrored;
+    const bool is_red = by_heights ? report.pair->strength < 0.0 : known.mirrored == MirroredChannel::red;
     switch (row.kind) {
-        case exchange: return exchanges(step, finding, report, y_is_known);
+        case exchange: return exchanges(step, finding, report, known.y);
         case invert:
-            step.channel = row.rule == "N220" ? z : by_heights && report.pair->strength < 0.0 ? x : y;
-            if (row.rule == "N401" && by_heights) step.certainty = safe;
+            step.channel = row.rule == "N220" ? z : is_red ? x : y;
+            if (row.rule == "N401" && is_decided) step.certainty = safe;
             if (row.rule == "N112" && report.y.y) step = {finding.rule, state_y, likely};  // green is as required
             if (step.kind == invert && step.channel < 0) return {};
             break;
         case state_y:
-            if (by_heights && report.pair->strength < 0.0) {
+            if (is_red) {
                 step.kind = invert;
                 step.channel = x;
             }
-            if (by_heights) step.certainty = safe;
+            if (is_decided) step.certainty = safe;
             break;
         case divide_by_alpha:
             if (format_info(report.format).channels < 4) return {};
@@ -122,8 +149,22 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
         case rebuild_z:
             if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
             break;
-        case stretch_z:
+        case undo_tone:
+            if (!finding.tone || z < 0) return {};
+            step.tone = finding.tone;
+            // Gamma and levels may fit alike.
+            if (step.certainty == safe && finding.confidence < kSurely) step.certainty = likely;
+            break;
+        case straighten:
+            // A channel that was shifted leans, too, and leaves vectors that are not unit vectors.
+            if (has_rule(report, "N201")) return {};
+            break;
         case normalize:
+            if (z < 0) return {};
+            // Vectors that contrast made longer were turned by it, too.
+            if (finding.tone) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}, step};
+            break;
+        case stretch_z:
             if (z < 0) return {};
             break;
         default: break;
@@ -146,13 +187,17 @@ std::vector<RepairStep> guesses_for(const Rule& rule, const CheckReport& report)
     return steps;
 }
 
-std::optional<RepairStep> repair_of(const Finding& finding, const CheckReport& report, const CheckOptions& checks) {
+std::optional<RepairStep> first_step(const Finding& finding, const CheckReport& report, const KnownOfMap& known) {
     for (const RuleRepair& row : kRepairs) {
         if (row.rule != finding.rule->id) continue;
-        const std::vector<RepairStep> steps = steps_for(row, finding, report, checks.require.y.has_value());
+        const std::vector<RepairStep> steps = steps_for(row, finding, report, known);
         if (!steps.empty()) return steps.front();
     }
     return std::nullopt;
+}
+
+std::optional<RepairStep> repair_of(const Finding& finding, const CheckReport& report, const CheckOptions& checks) {
+    return first_step(finding, report, {checks.require.y.has_value()});
 }
 
 }  // namespace tex::inline v1

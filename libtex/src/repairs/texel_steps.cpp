@@ -10,10 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include <tex/bake.h>
+#include <tex/format.h>
+#include <tex/height.h>
 #include <tex/mip.h>
 
 #include "checks/centre.h"
 #include "checks/texel_counts.h"
+#include "rows/math.h"
 #include "rows/unpack_rows.h"
 #include "stream/filled_map.h"
 #include "threads/parallel.h"
@@ -92,6 +96,28 @@ void divide_row(const LevelTexels& t, int j) {
         const float flat = t.code(channel == t.z ? 1.0f : 0.0f);
         for (int i = 0; i < t.image.extent().width; ++i)
             row[i] = alpha[i] > 0.0f ? std::min(row[i] / alpha[i], 1.0f) : flat;
+    }
+}
+
+// Where z was cut off, it follows from x and y.
+void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, int j) {
+    constexpr float kCutOff = 254.5f / 255.0f;
+    const auto black = static_cast<float>(tone.black), span = static_cast<float>(tone.white - tone.black);
+    const bool is_cut = tone.white < 1.0;
+    const float* const zs = t.z < 0 ? nullptr : t.row(t.z, j);
+    for (int i = 0; i < t.image.extent().width; ++i) {
+        const bool is_lost = is_cut && zs != nullptr && zs[i] >= kCutOff;
+        for (const int channel : {t.x, t.y, t.z}) {
+            if (channel < 0) continue;
+            float& c = t.row(channel, j)[i];
+            const float old = std::clamp(c, 0.0f, 1.0f);
+            const float power =
+                tone.gamma == 1.0 ? old : static_cast<float>(math::pow(static_cast<double>(old), tone.gamma));
+            c = std::clamp(black + span * power, 0.0f, 1.0f);
+        }
+        if (!is_lost) continue;
+        const float a = t.component(t.row(t.x, j)[i]), b = t.component(t.row(t.y, j)[i]);
+        t.row(t.z, j)[i] = t.code(std::sqrt(std::max(0.0f, 1.0f - a * a - b * b)));
     }
 }
 
@@ -189,10 +215,75 @@ Result<void> fill_base(const MipOptions& mip, const Texture& current, StoredLeve
     return levels.levels.size() > 1 ? build_levels(mip, false, levels, execution) : Result<void>();
 }
 
+// Turns all vectors about the axis that is at right angles to their mean and to z, so that the mean becomes z.
+Result<void> turn_mean_out(StoredLevels& levels, const Execution& execution) {
+    const NormalMap base = base_of(levels);
+    double sum[3] = {};
+    for (int j = 0; j < base.extent().height; ++j) {
+        for (int i = 0; i < base.extent().width; ++i) {
+            sum[0] += static_cast<double>(base.x.at(i, j));
+            sum[1] += static_cast<double>(base.y.at(i, j));
+            sum[2] += static_cast<double>(base.z.at(i, j));
+        }
+    }
+    const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    if (!(length > 0.0) || sum[2] <= 0.0) return Error{ErrorCode::unsupported, {}, "the mean points into the surface"};
+    const auto a = static_cast<float>(sum[0] / length), b = static_cast<float>(sum[1] / length),
+               c = static_cast<float>(sum[2] / length);
+    const float k = 1.0f / (1.0f + c);
+    return each_row(levels, execution, [=](const LevelTexels& t, int j) {
+        for (int i = 0; i < t.image.extent().width; ++i) {
+            float &xs = t.row(t.x, j)[i], &ys = t.row(t.y, j)[i];
+            const float x = t.component(xs), y = t.component(ys);
+            const float z = t.z < 0 ? std::sqrt(std::max(0.0f, 1.0f - x * x - y * y)) : t.component(t.row(t.z, j)[i]);
+            const float across = a * x + b * y;
+            xs = t.code(x - a * (z + k * across));
+            ys = t.code(y - b * (z + k * across));
+            if (t.z >= 0) t.row(t.z, j)[i] = t.code(across + c * z);
+        }
+    });
+}
+
+// The picture becomes the normals of the heights that it holds, in 8 bits or in 16.
+Result<void> bake_picture(const RepairOptions& options, const Texture& current, StoredLevels& levels,
+                          const Execution& execution) {
+    auto field = height_field(levels.levels.front(), {}, execution);
+    if (!field) return field.error();
+    field->bumpiness_x = field->bumpiness_y = *options.bumpiness;
+    auto map = bake(*field, {}, execution);
+    if (!map) return map.error();
+    const FormatInfo info = format_info(current.format);
+    const YAxis y = options.checks.require.y.value_or(YAxis::up);
+    const bool has_more = levels.levels.size() > 1;
+    Image image;
+    image.names = {"R", "G", "B"};
+    for (Plane<float>* plane : {&map->x, &map->y, &map->z}) {
+        const float sign = plane == &map->y && y == YAxis::down ? -1.0f : 1.0f;
+        for (int j = 0; j < map->extent().height; ++j) {
+            float* const row = plane->row(j);
+            std::transform(row, row + map->extent().width, row, [sign](float n) { return 0.5f * sign * n + 0.5f; });
+        }
+        image.planes.push_back(std::move(*plane));
+    }
+    const bool is_coarse = info.has_blocks() || (info.sample == SampleKind::unorm && info.bits == 8);
+    levels.head.format = *format_of(SampleKind::unorm, is_coarse ? 8 : 16, 3);
+    levels.head.swizzle = kSwizzleXyz;
+    levels.head.swizzle_known = true;
+    levels.head.y_axis = y;
+    levels.head.y_known = true;
+    levels.head.x_in_grey = false;
+    levels.head.normal_encoding.clear();
+    levels.is_signed = levels.keeps_blocks = false;
+    levels.levels.clear();
+    levels.levels.push_back(std::move(image));
+    return has_more ? build_levels(options.mip, true, levels, execution) : Result<void>();
+}
+
 }  // namespace
 
-Result<void> apply_step(const RepairStep& step, const MipOptions& mip, const Texture& current, StoredLevels& levels,
-                        const Execution& execution) {
+Result<void> apply_step(const RepairStep& step, const RepairOptions& options, const Texture& current,
+                        StoredLevels& levels, const Execution& execution) {
+    const MipOptions& mip = options.mip;
     const auto row_change = [&](const RowChange& change) { return each_row(levels, execution, change); };
     switch (step.kind) {
         case RepairKind::encode_srgb: return apply_curve(srgb_encoded, levels, execution);
@@ -232,6 +323,10 @@ Result<void> apply_step(const RepairStep& step, const MipOptions& mip, const Tex
             });
         case RepairKind::fill_background: return fill_base(mip, current, levels, execution);
         case RepairKind::rebuild_levels: return build_levels(mip, step.rule->id == "N103", levels, execution);
+        case RepairKind::undo_tone:
+            return row_change([&](const LevelTexels& t, int j) { undo_tone_row(t, *step.tone, j); });
+        case RepairKind::straighten: return turn_mean_out(levels, execution);
+        case RepairKind::bake_heights: return bake_picture(options, current, levels, execution);
         case RepairKind::change_sign:
         case RepairKind::drop_srgb:
         case RepairKind::state_y: break;  // these change no texel

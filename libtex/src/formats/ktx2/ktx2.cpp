@@ -323,6 +323,7 @@ Result<StoredTexture> parse_ktx2(const FetchBytes& fetch, std::size_t size, cons
     StoredTexture stored;
     stored.supercompression = *find_scheme(header.supercompression);
     Texture& texture = stored.head;
+    texture.zlib = stored.supercompression == Supercompression::zlib;
     const Result<std::optional<Ktx2Descriptor>> descriptor =
         read_descriptor(fetch, size, header.descriptor_offset, header.descriptor_bytes, texture.remarks);
     if (!descriptor) return descriptor.error();

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/curve_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "checks/context.h"
+#include "checks/lengths.h"
+#include "checks/thresholds.h"
+#include "checks/tone.h"
+
+namespace tex::inline v1 {
+namespace {
+
+// Thresholds that follow from the nature of the damage and need no fitting.
+constexpr double kOffCentre = 0.03;
+constexpr double kLeastDarkened = 0.94;      // nearer to 1, flat maps with short vectors look alike
+constexpr double kUnitAfterDivision = 0.05;  // the mean error of the lengths
+
+// The number by which most vectors are unit vectors if their values are divided by it: |2 c / f - 1| = 1.
+double unit_factor(const Stored& stored) {
+    std::vector<double> factors;
+    visit_samples(stored, [&](const double(&c)[3], int, int) {
+        const double sum = c[0] + c[1] + c[2], squares = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+        const double root = sum * sum - 2.0 * squares;
+        if (root >= 0.0 && sum > 0.0) factors.push_back(2.0 * squares / (sum + std::sqrt(root)));
+    });
+    if (factors.empty()) return 1.0;
+    const auto middle = factors.begin() + static_cast<std::ptrdiff_t>(factors.size() / 2);
+    std::nth_element(factors.begin(), middle, factors.end());
+    return *middle;
+}
+
+// All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then dividing
+// by it makes the vectors unit vectors, and x and y centre on half of it, not on the middle, on which those of maps
+// with short vectors do. The curve of sRGB moves the centre as well, but leaves 1 where it is. Returns whether it was
+// found.
+bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
+    if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
+    const double factor = unit_factor(context.stored);
+    if (factor > kLeastDarkened || centre.distance(factor / 2.0) > centre.distance(0.5) / 2.0) return false;
+    const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
+    const double decoded =
+        length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
+    const double divided = length_error(context.stored, [&](double c, int, int) { return c / factor; });
+    if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
+    Finding& finding =
+        findings.add("N313", "vectors are unit vectors if all channels are divided by " + decimal(factor, 2) +
+                                 "; x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
+                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    finding.figure = factor;
+    finding.unit = "ratio";
+    finding.confidence = 0.99;
+    finding.tone = ToneCurve{0.0, 1.0 / factor, 1.0};
+    return true;
+}
+
+// A change of levels that is neither the curve of sRGB nor a darkening: it moves x and y off the middle, and one curve
+// brings them back and makes vectors unit vectors.
+void check_tone(const CheckContext& context, const Centre& centre, Findings& findings) {
+    if (!context.stored.has_z() || context.kind != Kind::normals || !context.sampled_ok || has_free_lengths(context))
+        return;
+    const auto fit = find_tone(context.stored, centre, context.background ? &*context.background : nullptr);
+    if (!fit) return;
+    const ToneCurve& curve = fit->curve;
+    const bool is_gamma = curve.gamma != 1.0;
+    const std::string what = is_gamma ? "gamma " + decimal(curve.gamma, 2)
+                                      : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
+                                            decimal(100.0 * curve.white, 0) + " %";
+    Finding& finding = findings.add("N314", "vectors are unit vectors if " + what + (is_gamma ? " is" : " are") +
+                                                " taken back (z then differs by " + decimal(fit->error, 1) +
+                                                " codes from what x and y imply, and by " + decimal(fit->as_stored, 1) +
+                                                " as stored); x and y centre on " + decimal(255.0 * centre.x, 0) +
+                                                " and " + decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    finding.figure = is_gamma ? curve.gamma : 1.0 / (curve.white - curve.black);
+    finding.unit = is_gamma ? "gamma" : "contrast";
+    // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
+    constexpr double kClearlyBetter = 0.7, kClear = 0.99, kUnclear = 0.9;
+    finding.confidence = fit->error < kClearlyBetter * fit->other ? kClear : kUnclear;
+    finding.tone = curve;
+}
+
+}  // namespace
+
+void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
+    if (context.stored.is_signed || check_darkened(context, centre, findings)) return;
+    const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
+    const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
+    if (!dark && !light) return check_tone(context, centre, findings);
+    if (context.stored.has_z()) {
+        const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
+        const double restored = length_error(context.stored, [&](double c, int, int) {
+            return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
+        });
+        if (restored >= as_stored) return;
+    }
+    Finding& finding =
+        findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
+                                                 decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    finding.figure = (centre.x + centre.y) / 2.0;
+    finding.unit = "of full scale";
+    finding.confidence = 0.99;
+}
+
+}  // namespace tex::inline v1

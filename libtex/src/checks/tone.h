@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// tone.h: finds changes of levels (gamma, brightness, contrast), because z follows from x and y once they are undone.
+
+#pragma once
+
+#include <optional>
+
+#include <tex/check.h>
+
+#include "checks/background.h"
+#include "checks/centre.h"
+#include "checks/stored.h"
+
+namespace tex::inline v1 {
+
+// A curve that explains the stored values. Errors are the mean distance of z as it is stored from the z that x and y
+// imply, in codes of 8 bits.
+struct ToneFit {
+    ToneCurve curve;
+    double as_stored = 0.0, error = 0.0;  // without the curve, and with it
+    double other = 0.0;                   // with the best curve of the other family: levels, or gamma
+};
+
+// The change of levels of all channels that moved x and y off the middle. Nothing if they are there, or if the lengths
+// of vectors do not prove it. Precondition: x, y and z are stored, unsigned.
+std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background);
+
+// The contrast that made vectors longer and left the middle where it is: white - black is below 1.
+std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background);
+
+// The number of values that x and y take, at most, if they are codes of 8 bits that lie 4 or more from each other, as
+// after a reduction to few levels; 0 if they do not.
+int few_levels(const Stored& stored);
+
+}  // namespace tex::inline v1
