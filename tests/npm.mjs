@@ -91,7 +91,7 @@ function bakeSet(k) {
   if (heights.invert) args.push('--invert');
   if (heights.blur_sigma > 0) args.push('--blur', heights.blur_sigma);
   if (heights.deband !== 'off') args.push('--deband', heights.deband);
-  if (write.zstd) args.push('--zstd', write.zstd);
+  if (write.zstd) args.push('--supercompress', `zstd:${write.zstd}`);
   if (write.dds_header) args.push('--dds-header', write.dds_header);
   test(args.slice(0, 1).concat(args.slice(3)).join(' '), () => {
     try {
