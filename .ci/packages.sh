@@ -28,6 +28,11 @@ nightly_packages=(
     rustc mono-mcs abigail-tools mmdebstrap nasm g++-mingw-w64-x86-64-posix libz-mingw-w64-dev wine64 wine googletest
     minisign gdal-bin python3-gdal
 )
+# For samples/packaging/npm.sh. It needs node 20, too, which Debian 12 does not have.
+# shellcheck disable=SC2034
+wasm_packages=(
+    clang-19 lld-19 llvm-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 wasi-libc libclang-rt-19-dev-wasm32
+)
 
 # Elsewhere names may differ. Known: Ubuntu has another name for libjpeg-turbo.
 system=$(if [ -r /etc/os-release ]; then . /etc/os-release; echo "${ID:-} ${VERSION_ID:-}"; fi)

@@ -4,7 +4,8 @@
 # NIGHTLY.md says when it last ran, on which commit, and with what result. The last line counts all tests.
 #
 #     tests/nightly.sh [STEP...]    all steps, or the named ones: alone extremes long scalar commands slurm arm64 tsan
-#                                   tidy fuzz package abi readers engines platforms portable windows release
+#                                   tidy fuzz package abi readers engines platforms portable windows npm
+#                                   release
 #
 # FUZZ_SECONDS is the time for each fuzzer (default: 60).
 set -euo pipefail
@@ -216,6 +217,11 @@ windows() {
     samples/packaging/windows.sh && counted windows tests/windows.sh
 }
 
+# The npm package, in node.
+npm_package() {
+    samples/packaging/npm.sh && counted npm tests/npm.sh
+}
+
 # Everything that a release consists of, made from two clones in folders with names of different lengths: an hour. The
 # sums are equal, and the signature holds.
 make_release_twice() (
@@ -255,5 +261,6 @@ step engines engines
 step platforms platforms
 step portable portable
 step windows windows
+step npm npm_package
 step release script release make_release_twice
 finish

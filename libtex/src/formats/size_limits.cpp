@@ -2,6 +2,8 @@
 
 #include "formats/size_limits.h"
 
+#include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace tex::inline v1 {
@@ -23,6 +25,12 @@ Result<Extent> claimed_extent(const std::string& path, std::int64_t width, std::
     if (width * height > options.max_texels) {
         return Error{ErrorCode::unsupported, path,
                      by(width, height) + " texels are more than the limit of " + std::to_string(options.max_texels)};
+    }
+    // Where addresses have 32 bits, sizes of planes and levels would not fit std::size_t.
+    constexpr double kMostOfTexel = 32.0;  // bytes: four floats, twice
+    if (static_cast<double>(width * height) * kMostOfTexel >
+        static_cast<double>(std::numeric_limits<std::size_t>::max())) {
+        return Error{ErrorCode::out_of_memory, path, by(width, height) + " texels are more than fit memory"};
     }
     return Extent{static_cast<int>(width), static_cast<int>(height)};
 }

@@ -12,7 +12,7 @@
 namespace tex::inline v1 {
 
 // Checks and returns the extent that a header claims. Errors: bad_data (a side below 1), unsupported (a side above
-// kMaxExtent, more texels than max_texels).
+// kMaxExtent, more texels than max_texels), out_of_memory (more texels than memory with 32-bit addresses holds).
 Result<Extent> claimed_extent(const std::string& path, std::int64_t width, std::int64_t height,
                               const ReadOptions& options);
 

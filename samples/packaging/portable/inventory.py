@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What is inside the portable archive, or the one for Windows: an SPDX 2.3 document, and the licence of each part.
+"""What is inside the portable archive, the one for Windows or the npm package: an SPDX 2.3 document, and the licence of each part.
 
 Reads what the linker took from which static library (--trace), and ends with an error if it took something that the
 table below does not have.
@@ -62,6 +62,17 @@ WINDOWS |= {
     "onetbb": Part("Apache-2.0", "tbb12"),
     "libz-mingw-w64": Part("Zlib", "z", "libz-mingw-w64-dev"),
 }
+# The npm package: everything but the C library and what the compiler adds is built by npm/libraries.sh.
+WASM = {name: PARTS[name]._replace(package="") for name in
+        ("libpng1.6", "zlib", "libdeflate", "libzstd", "imath", "openexr", "libisal", "highway")}
+WASM |= {
+    "nlohmann-json3": PARTS["nlohmann-json3"],
+    "llvm-toolchain-19": Part("Apache-2.0 WITH LLVM-exception", "c++ c++abi clang_rt.builtins-wasm32",
+                              "libclang-rt-19-dev-wasm32"),
+    "wasi-libc": Part("Apache-2.0 WITH LLVM-exception AND MIT AND BSD-2-Clause AND CC0-1.0",
+                      "c m wasi-emulated-signal wasi-emulated-mman wasi-emulated-process-clocks wasi-emulated-getpid",
+                      "wasi-libc"),
+}
 OWN = {"tex", "tex_cli", "libtex-commands.dll"}
 
 
@@ -110,14 +121,14 @@ def package(name: str, version: str, licence: str, source: str) -> dict:
 def main() -> None:
     reader = argparse.ArgumentParser()
     reader.add_argument("--system", default="linux-x86_64",
-                        choices=("linux-x86_64", "linux-aarch64", "windows-x86_64"))
+                        choices=("linux-x86_64", "linux-aarch64", "windows-x86_64", "wasm32"))
     for option in ("version", "date"):
         reader.add_argument("--" + option, required=True)
     for option in ("sources", "trace", "out"):
         reader.add_argument("--" + option, type=Path, required=True)
     given = reader.parse_args()
 
-    parts = WINDOWS if given.system == "windows-x86_64" else PARTS
+    parts = {"windows-x86_64": WINDOWS, "wasm32": WASM}.get(given.system, PARTS)
     names = linked(given.trace)
     known = set(OWN).union(*(part.libraries.split() for part in parts.values()))
     if unknown := names - known:
