@@ -166,7 +166,7 @@ TEST(Check, LevelsThatFadedToFlatAreRelated) {
 }
 
 TEST(Check, AnEngineNeedsItsFileTypeFormatAndLevels) {
-    const Texture texture = map_texture();
+    Texture texture = map_texture();
     const auto message = [&](const std::string& file, const EngineNeeds& needs) {
         CheckOptions options;
         options.require.engines = {needs};
@@ -185,6 +185,12 @@ TEST(Check, AnEngineNeedsItsFileTypeFormatAndLevels) {
     EXPECT_EQ(message("a.png", {"e", {Container::png}, {Encoding::bc5, Encoding::ag8}, false}),
               "e does not read normals from rgb8-unorm, rgb but from bc5, ag8");
     EXPECT_EQ(message("a.png", {"e", {Container::png}, rgb, true}), "e needs all 8 levels, and the file has 1");
+    EngineNeeds needs{"e", {Container::ktx2}, rgb};
+    texture.zlib = true;
+    EXPECT_EQ(message("a.ktx2", needs), "");
+    needs.inflates_zlib = false;
+    EXPECT_EQ(message("a.ktx2", needs),
+              "e does not read KTX2 that zlib compressed, but Zstandard (--supercompress zstd)");
 }
 
 TEST(Check, RequirementsAreWhatTheySay) {

@@ -184,7 +184,9 @@ TEST(Supercompression, FramesOfOthersAreRead) {
         const auto got = read(file);
         ASSERT_TRUE(got) << got.error().message();
         expect_same_levels(*got, *wanted);
+        EXPECT_EQ(got->zlib, file == with_levels(plain, all_levels(plain, zlib), 3));
     }
+    EXPECT_FALSE(wanted->zlib);
 }
 
 // Rows that run upwards are read from the end of the level.
