@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_broken: writes samples/broken, which has one file for each rule of check-normals. Only that rule reports the
-// file. Rules about meshes also have a mesh, in samples/broken/meshes. Rules about models have a
-// model.
+// file. Rules about meshes also have a mesh, in samples/broken/meshes. Rules about models have a model.
 //
 //     make_broken samples/waves.png FOLDER
 //
@@ -261,11 +260,7 @@ void Maker::values() {
     png("N222-x-lost", lost);
     png("N223-x-ray-layout", x_ray);
     Codes unfilled = codes();
-    for (int j = 64; j < 128; ++j) {
-        for (int i = 80; i < 128; ++i) {
-            for (int c = 0; c < 3; ++c) unfilled.at(i, j, c) = 0;
-        }
-    }
+    for (int k = 0; k < 64 * 48 * 3; ++k) unfilled.at(80 + k / 3 % 48, 64 + k / 3 / 48, k % 3) = 0;
     png("N215-background", unfilled);
 }
 
@@ -275,22 +270,19 @@ void Maker::damages() {
     png("N303-premultiplied", with_alpha(codes(), true));
     png("N304-jpeg-blocks", jpeg(codes(), 30));
     const Codes whole_codes = codes();
-    Codes enlarged = whole_codes, blocks = whole_codes, darkened = whole_codes;
+    Codes enlarged = whole_codes, blocks = whole_codes;
     for (int k = 0; k < 128 * 128; ++k) {
         for (int c = 0; c < 3; ++c) {
             enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);  // each four times
             blocks.at(k % 128, k / 128, c) = whole_codes.at(k % 128, k / 512 * 4, c);    // four in 4x4
         }
     }
-    for (unsigned char& code : darkened.values) code = static_cast<unsigned char>(code * 3 / 5);
+    const auto gamma = [](int code) { return static_cast<int>(std::floor(255.0 * std::pow(code / 255.0, 0.8) + 0.5)); };
     png("N312-scaled-up", enlarged);
-    png("N313-darkened", darkened);
-    Codes brighter = whole_codes, few = codes_of(*scale(part(128, 128), 2.0f));
-    for (unsigned char& code : brighter.values)
-        code = static_cast<unsigned char>(std::floor(255.0 * std::pow(code / 255.0, 0.8) + 0.5));
-    for (unsigned char& code : few.values) code = static_cast<unsigned char>((code + 8) / 17 * 17);
-    png("N314-levels-changed", brighter);
-    png("N315-posterised", few);
+    png("N313-darkened", with_curve(codes(), [](int code) { return code * 3 / 5; }));
+    png("N314-levels-changed", with_curve(codes(), gamma));
+    png("N315-posterised",
+        with_curve(codes_of(*scale(part(128, 128), 2.0f)), [](int code) { return (code + 8) / 17 * 17; }));
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));

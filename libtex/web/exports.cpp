@@ -138,8 +138,12 @@ Json compared(const Json& call, Answer& answer) {
     if (a.extent() != b.extent()) fail("b: must have the extent of a");
     const Comparison comparison = sound(compare(a, b));
     const AngularError& error = comparison.error;
-    return {{"mean", error.mean}, {"rms", error.rms},   {"p50", error.p50},
-            {"p99", error.p99},   {"p999", error.p999}, {"max", error.max},
+    return {{"mean", error.mean},
+            {"rms", error.rms},
+            {"p50", error.p50},
+            {"p99", error.p99},
+            {"p999", error.p999},
+            {"max", error.max},
             {"degrees", answer.of(comparison.degrees)}};
 }
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <tex/tex.h>
+#include <nlohmann/json.hpp>
 
 #include "fields/bake_fields.h"
 #include "fields/blend_fields.h"

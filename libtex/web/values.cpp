@@ -37,8 +37,7 @@ constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;
 
 // Sizes fit std::size_t, which has 32 bits.
 void need_room(Extent extent, const std::string& name) {
-    if (extent.texels() > kMostTexels)
-        fail(name + ": more texels than fit memory", ErrorCode::out_of_memory);
+    if (extent.texels() > kMostTexels) fail(name + ": more texels than fit memory", ErrorCode::out_of_memory);
 }
 
 // The extent of {width, height, data, stride}, where stride counts samples from one row to the next.
@@ -57,8 +56,7 @@ Extent layout_from(const Json& given, const std::string& name, int channels, Arr
     const auto row = static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels);
     stride = given.value("stride", row);
     if (stride < row) fail(name + ".stride: must be at least " + std::to_string(row));
-    if (static_cast<double>(array.count) <
-        static_cast<double>(stride) * (extent.height - 1) + static_cast<double>(row))
+    if (static_cast<double>(array.count) < static_cast<double>(stride) * (extent.height - 1) + static_cast<double>(row))
         fail(name + ".data: has fewer samples than its width and height need");
     return extent;
 }
@@ -131,12 +129,13 @@ Texture texture_from(const Json& given) {
     texture.srgb = given.value("srgb", false);
     for (const Json& from : member(given, "levels")) {
         const std::span<const std::byte> bytes = bytes_from(member(from, "bytes"), "texture.levels");
-        texture.levels.push_back({{member(from, "width").get<int>(), member(from, "height").get<int>()},
-                                  {bytes.begin(), bytes.end()}});
+        texture.levels.push_back(
+            {{member(from, "width").get<int>(), member(from, "height").get<int>()}, {bytes.begin(), bytes.end()}});
         const Level& level = texture.levels.back();
         const auto k = static_cast<int>(texture.levels.size()) - 1;
         if (level.extent.width < 1 || level.extent.width > kMaxExtent || level.extent.height < 1 ||
-            level.extent.height > kMaxExtent || level.extent.texels() > kMostTexels || level.extent != level_extent(texture.levels[0].extent, k) ||
+            level.extent.height > kMaxExtent || level.extent.texels() > kMostTexels ||
+            level.extent != level_extent(texture.levels[0].extent, k) ||
             level.bytes.size() != level_bytes(texture.format, level.extent))
             fail("texture.levels[" + std::to_string(k) + "]: has not the extent or the bytes of a level");
     }
@@ -188,9 +187,8 @@ Json Answer::of(const Plane<float>& plane) {
 Json Answer::of(Texture texture) {
     Json levels = Json::array();
     for (Level& level : texture.levels) {
-        levels.push_back({{"width", level.extent.width},
-                          {"height", level.extent.height},
-                          {"bytes", of(std::move(level.bytes))}});
+        levels.push_back(
+            {{"width", level.extent.width}, {"height", level.extent.height}, {"bytes", of(std::move(level.bytes))}});
     }
     return {{"format", name_of(kFormatNames, texture.format)},
             {"swizzle", layout_name(texture.swizzle)},

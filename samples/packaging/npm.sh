@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# npm.sh: makes build/npm/libtex-VERSION.tgz, the npm package of the JavaScript module: WebAssembly, for node 20 and later
-# and for browsers, on every system, without a native part or an install script. `npm publish` takes it as it is.
+# npm.sh: makes build/npm/libtex-VERSION.tgz, the npm package of the JavaScript module: WebAssembly, for node 20 and
+# later, on every system, without a native part or an install script. `npm publish` takes it as it is.
 #
 #     samples/packaging/npm.sh
 #
@@ -33,7 +33,8 @@ fi
 . samples/packaging/npm/libraries.sh
 
 build_libtex() {
-    cmake --preset wasm -DCMAKE_EXE_LINKER_FLAGS="-L$prefix/lib -Wl,--trace" >"$work/libtex.log" 2>&1 || { tail -n 20 "$work/libtex.log" >&2; return 1; }
+    cmake --preset wasm -DCMAKE_EXE_LINKER_FLAGS="-L$prefix/lib -Wl,--trace" >"$work/libtex.log" 2>&1 ||
+        { tail -n 20 "$work/libtex.log" >&2; return 1; }
     # What the linker has taken from where (--trace) stays from the run that linked.
     cmake --build --preset wasm | tee -a "$wasm/linked.log" \
         >>"$work/libtex.log" || { tail -n 20 "$work/libtex.log" >&2; return 1; }

@@ -32,6 +32,11 @@ Texture texture_of(const std::vector<Codes>& levels);
 
 Codes flip_green(const Codes& codes);
 Codes exchange(const Codes& codes, int a, int b);  // two channels
+template <class Curve>
+Codes with_curve(Codes codes, Curve curve) {  // of a code from 0 to 255
+    for (unsigned char& code : codes.values) code = static_cast<unsigned char>(curve(int{code}));
+    return codes;
+}
 Codes srgb_encode(const Codes& codes);             // the sRGB curve, applied once too often
 Codes srgb_decode(const Codes& codes);
 // Adds an alpha of smooth blobs, 0 to 1: straight (the same RGB) or multiplied into R, G and B.

@@ -96,7 +96,7 @@ constexpr Engine kEngines[] = {
      "KTX2Loader loads BC5, EAC RG11 and RG8 as they are, and renderers of 2026 and later rebuild z for them. BC5 is "
      "for desktop GPUs, --format eac-rg11 for others. On geometry of three.js, repeat.y and normalScale.y are -1. The "
      "core of glTF does not allow such files in a model (issue 2602 of glTF).",
-     kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green, {}, false},
+     kThreePackedTypes, kThreePackedEncodings, RoughnessUse::green, kThreePackedEncodings, false},
     // Drawn by tests/engines: in the default, left-handed scene, both x and y of +Y maps come out the other way, and of
     // -Y maps x does.
     {"babylon", png, rgb8, YAxis::up, false, "",

@@ -10,7 +10,7 @@
 sources=(imath openexr libisal highway libpng1.6 libdeflate libzstd zlib)
 bare_sources=()
 lgpl_sources=()
-llvm=llvm-toolchain-19
+llvm="llvm-toolchain-19"
 toolchain_options=(-DCMAKE_TOOLCHAIN_FILE="$toolchain")
 here=samples/packaging/npm
 # The flags of toolchain.cmake.
@@ -68,8 +68,9 @@ with_cxx() {
         esac
         sources+=("$source")
     done
-    compile_all cxx libc++.a -I"$here/absent" -I"$root/libcxx/src" -I"$root/libcxxabi/include" -I"$root/libunwind/include" \
-        -I"$root/libunwind/src" -D_LIBCPP_BUILDING_LIBRARY -DLIBCXX_BUILDING_LIBCXXABI -D_LIBCXXABI_BUILDING_LIBRARY \
+    compile_all cxx libc++.a -I"$here/absent" -I"$root/libcxx/src" -I"$root/libcxxabi/include" \
+        -I"$root/libunwind/include" -I"$root/libunwind/src" -D_LIBCPP_BUILDING_LIBRARY \
+        -DLIBCXX_BUILDING_LIBCXXABI -D_LIBCXXABI_BUILDING_LIBRARY \
         -D_LIBCXXABI_HAS_NO_THREADS -D_LIBUNWIND_HAS_NO_THREADS -D_LIBUNWIND_HIDE_SYMBOLS -DNDEBUG -w -- \
         "${sources[@]}" "$root/libunwind/src/Unwind-wasm.c" "$here/setjmp.c"
     cp "$prefix/lib/libc++.a" "$prefix/lib/libc++abi.a"  # clang names both
@@ -88,8 +89,9 @@ with_isal_in_c() {
     cp "$root"/include/*.h "$prefix/include/isa-l"
     printf '#include <isa-l/%s>\n' crc.h crc64.h igzip_lib.h >"$prefix/include/isa-l.h"
     printf '#define ISAL_%s\n' 'MAJOR_VERSION 2' 'MINOR_VERSION 30' 'PATCH_VERSION 0' >>"$prefix/include/isa-l.h"
-    compile_all libisal libisal.a -I"$root/include" -I"$root/igzip" -w -- "$root"/igzip/{igzip_inflate,igzip,hufftables_c}.c \
-        "$root"/igzip/adler32_base.c "$root"/crc/{crc_base,crc_base_aliases}.c "$here/isal.c"
+    compile_all libisal libisal.a -I"$root/include" -I"$root/igzip" -w -- \
+        "$root"/igzip/{igzip_inflate,igzip,hufftables_c}.c "$root"/igzip/adler32_base.c \
+        "$root"/crc/{crc_base,crc_base_aliases}.c "$here/isal.c"
     pkgconfig libisal 2.30.0 isal
 }
 
@@ -97,7 +99,8 @@ with_c_libraries() {
     local root
     root=$(source_of zlib)
     cp "$root/zlib.h" "$root/zconf.h" "$prefix/include"
-    compile_all zlib libz.a -w -- "$root"/{adler32,crc32,deflate,inffast,inflate,inftrees,trees,zutil,compress,uncompr}.c
+    compile_all zlib libz.a -w -- \
+        "$root"/{adler32,crc32,deflate,inffast,inflate,inftrees,trees,zutil,compress,uncompr}.c
     root=$(source_of libdeflate)
     cp "$root/libdeflate.h" "$prefix/include"
     compile_all libdeflate libdeflate.a -I"$root" -w -- "$root"/lib/{adler32,crc32,deflate_compress}.c \
@@ -119,8 +122,8 @@ build_wasm_libraries() {
     printf 'add_library(TBB::tbb INTERFACE IMPORTED)\n' >"$prefix/lib/cmake/TBB/TBBConfig.cmake"
     with_c_libraries
     with_isal_in_c
-    with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF "${position[@]}" -DPNG_EXECUTABLES=OFF -DPNG_HARDWARE_OPTIMIZATIONS=OFF \
-        -DM_LIBRARY=m -DPNG_BUILD_ZLIB=OFF
+    with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF "${position[@]}" -DPNG_EXECUTABLES=OFF \
+        -DPNG_HARDWARE_OPTIMIZATIONS=OFF -DM_LIBRARY=m -DPNG_BUILD_ZLIB=OFF
     with_cmake imath -DPYTHON=OFF "${position[@]}"
     # OpenEXR 3.1's new core asks whether the setting is defined, not what it is.
     sed -i 's/^#ifdef ILM\(THREAD\|BASE\)_THREADING_ENABLED/#if ILMTHREAD_THREADING_ENABLED/' \
