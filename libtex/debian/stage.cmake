@@ -28,6 +28,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   if(EXISTS ${share}/doc/libtex)
     file(RENAME ${share}/doc/libtex ${documents})
     file(REMOVE ${documents}/LICENSE)  # copyright says where Debian keeps this licence
+  endif()
+  if(EXISTS ${documents}/CHANGELOG.md)
     file(RENAME ${documents}/CHANGELOG.md ${documents}/changelog)
     compress(${documents}/changelog)
   endif()

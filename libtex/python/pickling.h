@@ -310,6 +310,7 @@ void each_part(Finding& o, F& f) {
     f(o.row);
     f(o.fix_harms);
     f(o.marks);
+    f(o.tone);
 }
 
 template <class F>

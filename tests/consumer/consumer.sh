@@ -112,7 +112,8 @@ package() {
 }
 # What is in Debian's own places; package() adds the documents of each package.
 debian_files='s|/zsh/site-functions/|/zsh/vendor-completions/|; s|^share/man/.*|&.gz|; /doc\/libtex\/LICENSE/d
-s|doc/libtex/CHANGELOG.md|doc/libtex-dev/changelog.gz|; s|doc/libtex/|doc/libtex-dev/|'
+s|doc/libtex/CHANGELOG.md|doc/libtex-dev/changelog.gz|; s|doc/libtex/samples|doc/libtex-tools/samples|
+s|doc/libtex/|doc/libtex-dev/|'
 
 # Hardened as by Debian's hardening=+all: position-independent, read-only relocations, bound at start, no code on the
 # stack, with stack protector and fortified calls. And no search path for libraries.

@@ -37,7 +37,7 @@ Codes with_curve(Codes codes, Curve curve) {  // of a code from 0 to 255
     for (unsigned char& code : codes.values) code = static_cast<unsigned char>(curve(int{code}));
     return codes;
 }
-Codes srgb_encode(const Codes& codes);             // the sRGB curve, applied once too often
+Codes srgb_encode(const Codes& codes);  // the sRGB curve, applied once too often
 Codes srgb_decode(const Codes& codes);
 // Adds an alpha of smooth blobs, 0 to 1: straight (the same RGB) or multiplied into R, G and B.
 Codes with_alpha(const Codes& codes, bool premultiplied);

@@ -361,8 +361,8 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (report.more_data && !(carries_extras(*finding.rule, report) && target_of(id, report, require))) {
         if (id == "N212" && report.map.empty()) {
             return {
-                "If that data belongs there, --swizzle rgb says so, and --swizzle labpbr where blue holds occlusion. No "
-                "command is printed, because it would lose the data: save it first with unpack-normals --alpha-out."};
+                "If that data belongs there, --swizzle rgb says so, or labpbr where blue holds occlusion. No command: "
+                "it would lose the data, which unpack-normals --alpha-out saves."};
         }
         return {
             "No command is printed, because it would lose what the other channels hold. Save that first with "
