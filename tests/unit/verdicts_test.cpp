@@ -131,6 +131,16 @@ TEST(Verdicts, ADarkenedMapDidNotGoThroughTheCurve) {
     }
 }
 
+// A number that suits few colours is no evidence: the smallest level of a picture of the sky.
+TEST(Verdicts, AFewColoursAreNoDarkenedMap) {
+    const auto sky = [](int i, int j) {
+        constexpr int kLight[] = {67, 55, 76, 58};
+        const int c = kLight[2 * j + i];
+        return std::array<int, 4>{c, c - 5, c - 24, 255};
+    };
+    EXPECT_FALSE(ids(picture(2, 3, sky), Severity::error).contains("N313"));
+}
+
 // What contrast and sharpening do: averages never make vectors longer.
 TEST(Verdicts, VectorsThatAreTooLongNameTheirCause) {
     const auto says = [](int percent) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,8 +20,9 @@ namespace {
 
 // Thresholds that follow from the nature of the damage and need no fitting.
 constexpr double kOffCentre = 0.03;
-constexpr double kLeastDarkened = 0.94;      // nearer to 1, flat maps with short vectors look alike
-constexpr double kUnitAfterDivision = 0.05;  // the mean error of the lengths
+constexpr double kLeastDarkened = 0.94;                 // nearer to 1, flat maps with short vectors look alike
+constexpr double kUnitAfterDivision = 0.05;             // the mean error of the lengths
+constexpr std::int64_t kLeastDarkenedTexels = 16 * 16;  // a number that suits a few colours can always be found
 
 // The number by which most vectors are unit vectors if their values are divided by it: |2 c / f - 1| = 1.
 double unit_factor(const Stored& stored) {
@@ -42,6 +44,7 @@ double unit_factor(const Stored& stored) {
 // found.
 bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
     if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
+    if (context.stored.extent().texels() < kLeastDarkenedTexels) return false;
     const double factor = unit_factor(context.stored);
     if (factor > kLeastDarkened || centre.distance(factor / 2.0) > centre.distance(0.5) / 2.0) return false;
     const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
