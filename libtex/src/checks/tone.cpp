@@ -14,8 +14,8 @@
 namespace tex::inline v1 {
 namespace {
 
-// Chosen on the maps of wild4, none of which was held back: a trial of these figures in Python left one of 349, which
-// went through the sRGB curve, and found gamma 1.2 in 33 of 38 intact ones. What it missed is nearly flat, or noise.
+// Chosen on the maps of wild4, none of which was held back. Of 24 intact maps from elsewhere, gamma 1.2 and 0.8 are
+// found in 16 each, levels from 10 % up in 16, and levels up to 90 % in 22; none is taken for changed as it is.
 constexpr double kOffMiddle = 0.02;      // five codes: rounding moves medians by one
 constexpr double kLeastToneError = 0.7;  // codes, as stored: rounding alone makes 0.3
 constexpr double kToneLead = 1.6;        // of the error as stored over that with the curve
