@@ -44,6 +44,7 @@ private:
     cli::CompareDocuments documents_;
     cli::CurveOptions curve_;
     cli::RunOptions running_;
+    std::vector<std::string> sources_;  // everything that is read
     cli::ComparisonRun run_{command.inputs(), pair_.warnings()};
 };
 
@@ -63,7 +64,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
         if (curve_.is_asked()) return;
         if (inputs.size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (inputs[0] == "-" && inputs[1] == "-") throw cli::UsageError("standard input can only be read once");
-        std::vector<std::string> read = sources();
+        std::vector<std::string> read = sources_ = sources();
         read.insert(read.end(), command.argument_files().begin(), command.argument_files().end());
         documents_.check(read);
     });
@@ -86,7 +87,7 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     host.begin();
     auto code = curve_.is_asked() ? draw_curve(console) : compare_files(console);
     if (code) {
-        if (auto written = documents_.write_depfile(sources()); !written) code = written.error();
+        if (auto written = documents_.write_depfile(sources_); !written) code = written.error();
     }
     console.clear_progress();
     if (!host.interruption().empty()) host.end_interrupted();
@@ -96,7 +97,6 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     return running_.json ? std::max(failed, cli::print_failure(console, run_, code.error())) : failed;
 }
 
-// Everything that is read.
 std::vector<std::string> CompareNormals::sources() const {
     std::vector<std::string> names;
     for (const std::string& input : command.inputs()) {

@@ -25,10 +25,10 @@ Result<std::vector<ComparedMap>> maps_of_file(const std::string& name, const std
     return maps;
 }
 
-std::string fields_of_maps(const std::vector<ComparedMap>& maps) {
-    std::vector<std::string> fields;
-    for (const ComparedMap& map : maps) fields.push_back(map.model->field);
-    return join(fields);
+std::string materials_of(const std::vector<ComparedMap>& maps) {
+    std::vector<std::string> materials;
+    for (const ComparedMap& map : maps) materials.push_back(printable(map.model->material));
+    return join(materials);
 }
 
 // The map of the same material, if there is one.
@@ -57,7 +57,7 @@ Result<std::vector<MapPair>> map_pairs(
     }
     const auto word = [](const MapPair& pair) {
         const ComparedMap& named = pair.maps[0].model ? pair.maps[0] : pair.maps[1];
-        return named.model ? named.model->field : std::string();
+        return named.model ? named.model->material : std::string();
     };
     if (maps[0].size() == 1 && maps[1].size() == 1) {
         MapPair pair{{std::move(maps[0].front()), std::move(maps[1].front())}};
@@ -68,12 +68,12 @@ Result<std::vector<MapPair>> map_pairs(
         if (maps[1 - k].front().model) continue;
         return Error{ErrorCode::bad_option, names[k],
                      fmt::format("has {} normal maps, and {} is one: give --material, which is one of {}",
-                                 maps[k].size(), names[1 - k], fields_of_maps(maps[k]))};
+                                 maps[k].size(), names[1 - k], materials_of(maps[k]))};
     }
     std::vector<MapPair> pairs;
     for (const ComparedMap& map : maps[0]) {
         if (const ComparedMap* const partner = partner_of(map, maps[1])) {
-            pairs.push_back({{map, *partner}, map.model->field});
+            pairs.push_back({{map, *partner}, map.model->material});
         } else {
             warn(map.name(), fmt::format("is not compared: {} has no map of that material", names[1]));
         }

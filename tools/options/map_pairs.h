@@ -29,7 +29,7 @@ struct ComparedMap {
 
 struct MapPair {
     ComparedMap maps[2];
-    std::string material = {};  // of A or, if that is no model, of B; empty: neither is a model
+    std::string material = {};  // as --material takes it, of A or, if that is no model, of B; empty: neither is one
 
     [[nodiscard]] std::vector<std::string> names() const { return {maps[0].name(), maps[1].name()}; }
 };

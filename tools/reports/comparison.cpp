@@ -52,7 +52,7 @@ ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedL
     }
     std::string text;
     if (is_first) {
-        if (!run.material.empty()) text = run.material + ":\n";
+        if (!run.material.empty()) text = printable(run.material) + ":\n";
         text += fmt::format("{:>5} {:>11} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  in degrees; largest at\n", "level",
                             "texels", "mean", "rms", "p50", "p99", "p99.9", "max");
     }

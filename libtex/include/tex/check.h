@@ -280,7 +280,7 @@ struct PairEvidence {
     [[nodiscard]] bool decides() const { return correlation >= kHeightsFollow && offset_x == 0 && offset_y == 0; }
 };
 
-// How an occlusion map follows the normals: beside the occlusion of the heights that integrate() finds for them.
+// How an occlusion map follows the normals: beside the occlusion, heights and curvature of the surface they show.
 struct OcclusionEvidence {
     double correlation = 0.0;                     // of both; below 0: open and closed may be exchanged
     bool mirrored_x = false, mirrored_y = false;  // the occlusion fits better when it is mirrored so

@@ -127,7 +127,7 @@ void check_channels(const CheckContext& context, Findings& findings) {
     if (counts[Property::red_not_one].count > 0) {
         add_counted(context, findings, "N211", Property::red_not_one, " have R below 255");
     }
-    // Whoever names the channels of the normals knows that alpha is none of them.
+    // The option for the layout says that alpha holds something else.
     if (counts[Property::alpha_not_one].count > 0 && !context.options.swizzle) {
         add_counted(context, findings, "N212", Property::alpha_not_one, " have A below 255");
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// setjmp.c: what clang's -wasm-enable-sjlj calls. A function that calls setjmp() is an "invocation", the address of a
-// variable of its own; its calls of setjmp() have labels. longjmp() throws, with tag 1; the function catches, and asks
-// which of its calls was meant.
+// setjmp.c: the functions that clang's -wasm-enable-sjlj calls. Each run of a function that calls setjmp() is an
+// "invocation", named by the address of one of its local variables, and each such call has a number, its label.
+// longjmp() throws a WebAssembly exception; the function catches it and asks here which call it belongs to.
 
 #include <setjmp.h>
 #include <stddef.h>
