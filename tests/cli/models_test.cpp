@@ -255,6 +255,9 @@ TEST_F(ModelInputs, TwoModelsAreComparedByTheirMaterials) {
     refuses("compare-normals a.gltf c.gltf --material wood", 4, "c.gltf: has no material \"wood\"");
     refuses("compare-normals a.gltf b.gltf --heatmap half.png", 2, "half.png");
     refuses("compare-normals a.gltf b.gltf --mesh a.gltf", 4, "--mesh is for maps without their mesh");
+    model("odd.gltf", R"(st/one\u001b[31m)", "wood");
+    EXPECT_EQ(go("compare-normals odd.gltf odd.gltf").out.find("st/one\\x1b[31m:\nlevel "), 0u);
+    refuses("compare-normals odd.gltf n.png", 4, "give --material, which is one of st/one\\x1b[31m, wood");
     const Ran over = shell(scratch_, "compare-normals a.gltf b.gltf --max 0.1");
     EXPECT_EQ(over.code, 1);
     EXPECT_NE(over.err.find("a.gltf: wood: level 0: max "), std::string::npos) << over.err;
