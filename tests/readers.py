@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 import numpy
 from osgeo import gdal, osr
@@ -132,6 +133,25 @@ def bil_without_pixeltype():
     assert (by_gdal("plain.bil") == 65531).all() and (ours("plain.bil") == 65531).all()
 
 
+def bil_without_nbits():
+    for kind, codes in (("UInt16", numpy.arange(SIDE * SIDE, dtype="<u2")), ("Float32", numpy.arange(SIDE * SIDE, dtype="<f4"))):
+        codes = codes.reshape(SIDE, SIDE)
+        codes.tofile("bits.bil")
+        with open("bits.hdr", "w", encoding="ascii") as file:
+            file.write(f"NROWS {SIDE}\nNCOLS {SIDE}\nBYTEORDER I\n")
+        assert gdal.GetDataTypeName(gdal.Open("bits.bil").GetRasterBand(1).DataType) == kind
+        assert (by_gdal("bits.bil") == codes).all() and (ours("bits.bil") == codes).all()
+
+
+def bil_with_long_rows():
+    codes = numpy.arange(SIDE * SIDE, dtype="<u2").reshape(SIDE, SIDE)
+    numpy.pad(codes, ((0, 0), (0, 2))).tofile("rows.bil")
+    with open("rows.hdr", "w", encoding="ascii") as file:
+        file.write(f"NROWS {SIDE}\nNCOLS {SIDE}\nNBITS 16\nBYTEORDER I\nTOTALROWBYTES {2 * SIDE + 4}\n")
+    assert (ours("rows.bil") == codes).all()
+    assert (by_gdal("rows.bil") != codes).any(), "GDAL ignores the word"
+
+
 def grid_without_nodata():
     with open("grid.asc", "w", encoding="ascii") as file:
         file.write("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30\n1 2 3\n4 -9999 6\n")
@@ -190,6 +210,65 @@ def heights_in_red_and_green():
         assert abs(read * 65535 - values).max() < 0.5, name
 
 
+def exr_of_a_crop():
+    Image.fromarray(numpy.full((SIDE, SIDE, 3), 128, numpy.uint8)).save("grey.png")
+    printed("oiiotool", "grey.png", "--fullsize", f"{2 * SIDE}x{2 * SIDE}+0+0", "-o", "crop.exr")
+    assert len(printed("oiiotool", "--native", "--dumpdata", "crop.exr").stdout.split("Pixel (")) == SIDE * SIDE + 1
+    facts = tex.read_normals("crop.exr")[1]
+    assert normals("crop.exr").shape[:2] == (SIDE, SIDE) and "of a picture of 64x64" in facts["remarks"][0], facts
+
+
+def png_with_a_gamma():
+    Image.fromarray(numpy.full((SIDE, SIDE, 3), 128, numpy.uint8)).save("gamma.png")
+    data = open("gamma.png", "rb").read()
+    chunk = b"gAMA" + struct.pack(">I", 100000)
+    with open("gamma.png", "wb") as file:
+        file.write(data[:33] + struct.pack(">I", 4) + chunk + struct.pack(">I", zlib.crc32(chunk)) + data[33:])
+    assert (by_gdal("gamma.png") == 128).all() and set(by_oiio("gamma.png")) == {(128, 128, 128)}
+    assert Image.open("gamma.png").getpixel((0, 0)) == (128, 128, 128)
+    assert (ours("gamma.png") == 128).all()
+    printed("convert-im6.q16", "gamma.png", "-define", "dds:compression=none", "gamma.dds")
+    assert open("gamma.dds", "rb").read()[-1] == 188, "ImageMagick encodes"
+
+
+def tga_of_grey_words():
+    head = struct.pack("<3B5x4H2B", 0, 0, 3, 0, 0, SIDE, SIDE, 16, 0x20)
+    with open("words.tga", "wb") as file:
+        file.write(head + bytes([33, 200]) * SIDE * SIDE)
+    assert set(by_oiio("words.tga")) == {(33,)} and Image.open("words.tga").getpixel((0, 0)) == (33, 200)
+    try:
+        tex.read_image("words.tga")
+    except tex.UnsupportedError as error:
+        assert "counts no bits of alpha" in str(error), error
+    else:
+        raise AssertionError("read")
+
+
+def dds_with_masks():
+    texel = (190, 128, 240, 255)
+    masks = {"rgba.dds": (0xFF, 0xFF00, 0xFF0000, 0xFF000000), "bgrx.dds": (0xFF0000, 0xFF00, 0xFF, 0)}
+    for name, order in (("rgba.dds", (0, 1, 2, 3)), ("bgrx.dds", (2, 1, 0, 3))):
+        head = b"DDS " + struct.pack("<7I44x", 124, 0x100F, SIDE, SIDE, 4 * SIDE, 0, 0)
+        head += struct.pack("<8I", 32, 0x41 if name == "rgba.dds" else 0x40, 0, 32, *masks[name])
+        with open(name, "wb") as file:
+            file.write(head + struct.pack("<5I", 0x1000, 0, 0, 0, 0) + bytes(texel[k] for k in order) * SIDE * SIDE)
+        planes = tex.read_image(name, values="stored").planes
+        assert [numpy.array(plane)[3, 3] for plane in planes][:3] == list(texel[:3]), name
+        assert by_oiio(name)[5][:3] == texel[:3], name
+    turned = subprocess.run(["convert-im6.q16", "rgba.dds", "-depth", "8", "rgb:-"], capture_output=True, check=True)
+    assert tuple(turned.stdout[:3]) == (240, 128, 190), "ImageMagick exchanges red and blue"
+    assert Image.open("bgrx.dds").getpixel((1, 0)) != texel[:3], "Pillow reads three bytes a texel"
+
+
+def turned_tiff():
+    codes = numpy.arange(SIDE * SIDE, dtype=numpy.uint8).reshape(SIDE, SIDE)
+    Image.fromarray(codes).save("turned.tif", tiffinfo={274: 3})
+    assert (ours("turned.tif") == codes[::-1, ::-1]).all()
+    assert (numpy.asarray(Image.open("turned.tif")) == codes[::-1, ::-1]).all(), "Pillow turns"
+    assert (by_gdal("turned.tif") == codes).all(), "GDAL does not"
+    assert by_oiio("turned.tif")[0] == (int(codes[0, 0]),), "oiiotool does not"
+
+
 def bc5_with_ati2():
     # x is 200 and y is 60 everywhere: two blocks of one value each.
     def block(value):
@@ -219,6 +298,13 @@ ROWS = [
     elevation_in_degrees,
     elevation_in_web_mercator,
     heights_in_red_and_green,
+    bil_without_nbits,
+    bil_with_long_rows,
+    exr_of_a_crop,
+    png_with_a_gamma,
+    tga_of_grey_words,
+    dds_with_masks,
+    turned_tiff,
     bc5_with_ati2,
 ]
 

@@ -55,7 +55,7 @@ has_everything() {
     local command
     for command in tools/*-normals.cpp; do
         command=$(basename "$command" .cpp)
-        if [ ! -s "$tree/bin/$command.exe" ] || [ ! -s "$tree/share/doc/libtex/manual/$command.1.md" ]; then
+        if [ ! -s "$tree/bin/$command.exe" ] || [ ! -s "$tree/share/doc/libtex/man/$command.1.md" ]; then
             echo "lacks $command"
             return 1
         fi

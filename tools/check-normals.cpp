@@ -19,6 +19,7 @@
 #include "reports/findings.h"
 #include "reports/github.h"
 #include "reports/kinds.h"
+#include "tree/state.h"
 
 namespace {
 
@@ -79,6 +80,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
         if (mesh_.has_mesh()) throw cli::UsageError("--list and --explain take no --mesh");
     });
     files.reads_folders = true;
+    files.made_in = cli::files_made_by_builds;
     files.add_inputs(command, [this] { return reads_nothing(); });
     running.add(command);
     command.example("check-normals --require mips=full --require y=up 'art/**/*_n.dds'",
@@ -149,7 +151,9 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
     const cli::Demands& demands = rules_.demands_of(job.task.input);
     std::vector<Finding> waived = documents_.accept(report);
     const auto known = static_cast<int>(waived.size());
-    if (report.error) {
+    // A file whose damage the baseline knows, or will, is no failure of this run.
+    const bool is_known = known > 0 || (documents_.writes_baseline() && !report.findings.empty());
+    if (report.error && !is_known) {
         if (report.findings.empty())
             job.console.error(report.map.empty() ? report.error->message()
                                                  : cli::title_of(report) + ": " + report.error->reason);
@@ -286,7 +290,8 @@ Result<cli::Json> CheckNormals::judge_in_model(cli::Job& job, CheckReport report
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {
     for (const std::string& sentence : idle_rules_) console.warning(sentence);
-    totals_.left_out = files.left_out;
+    totals_.other_files = files.other_files;
+    totals_.made_files = files.made_files;
     const std::string summary = classifies_ ? kinds_.text() : totals_.text();
     const cli::ExitCode printed = running.json ? cli::ExitCode::done : console.print(summary + "\n");
     return std::max(printed, documents_.write(console, summary));

@@ -197,8 +197,8 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
     for (const RepairStep& step : repaired.steps) {
         if (step.rule->id != "N220") continue;
         job.warn(
-            "blue alone is inverted; if bumps are dents now, the whole picture was inverted: invert all of it in "
-            "an image editor instead",
+            "blue alone was inverted back; if bumps look like dents now, the whole picture was inverted, and "
+            "scale-normals --scale -1 turns x and y, too",
             name);
     }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));

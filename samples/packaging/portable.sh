@@ -89,6 +89,7 @@ install_libtex() {
     mkdir -p "$documents"
     cp -r README.md CHANGELOG.md LICENSE samples "$documents"
     rm -r "$documents/samples/packaging"
+    cmake -D DOCUMENTS="$documents" -P man/readme.cmake
     find "$documents" -name '__pycache__' -prune -exec rm -r {} +
     find "$stage/share/man" -name '*.[0-9]' -exec gzip -9n {} +
     python3 samples/packaging/portable/inventory.py --system "linux-$processor" --version "$version" \

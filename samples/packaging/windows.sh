@@ -51,10 +51,11 @@ install_libtex() {
     rm -rf "$stage"
     cmake --install "$cross" --prefix "$stage" --component tools --strip >/dev/null
     rm -rf "$stage/share/man"
-    mkdir -p "$documents/manual"
+    mkdir -p "$documents/man"
     cp -r README.md CHANGELOG.md LICENSE samples "$documents"
-    cp man/*.md "$documents/manual"
+    cp man/*.md "$documents/man"
     rm -r "$documents/samples/packaging"
+    cmake -D DOCUMENTS="$documents" -P man/readme.cmake
     find "$documents" -name '__pycache__' -prune -exec rm -r {} +
     python3 samples/packaging/portable/inventory.py --system windows-x86_64 --version "$version" \
         --sources "$work/sources" --date "$date" --trace "$cross/linked.log" --out "$documents"

@@ -249,13 +249,12 @@ TEST_F(Advice, PatternsThatTheShellLeftAloneAreExpanded) {
     EXPECT_NE(none.err.find("art/**/*_d.png: no file matches this pattern"), std::string::npos) << none.err;
 }
 
-TEST_F(Advice, TheBaselineLeavesUnreadableFilesAndShowsWhatItWaives) {
-    scratch_.write("cut.png", "not a picture");
+TEST_F(Advice, TheBaselineLeavesMissingFilesAndShowsWhatItWaives) {
     const Ran written =
-        run(scratch_, "check-normals", {"down.png", "cut.png", "--require", "y=up", "--baseline-write", "k"});
-    EXPECT_EQ(written.code, 4);
-    EXPECT_EQ(scratch_.read("k").find("cut.png"), std::string::npos);
-    EXPECT_EQ(run(scratch_, "check-normals", {"down.png", "cut.png", "--require", "y=up", "--baseline", "k"}).code, 4);
+        run(scratch_, "check-normals", {"down.png", "gone.png", "--require", "y=up", "--baseline-write", "k"});
+    EXPECT_EQ(written.code, 3);
+    EXPECT_EQ(scratch_.read("k").find("gone.png"), std::string::npos);
+    EXPECT_EQ(run(scratch_, "check-normals", {"down.png", "gone.png", "--require", "y=up", "--baseline", "k"}).code, 3);
     const Ran waived =
         run(scratch_, "check-normals", {"down.png", "--require", "y=up", "--baseline", "k", "--sarif", "s"});
     EXPECT_EQ(waived.code, 0) << waived.out;
@@ -309,10 +308,17 @@ TEST_F(Advice, RoughnessWithoutTheMaterialsOwnIsAMirror) {
 TEST_F(Advice, AnInvertedPictureIsNotMendedInSilence) {
     const auto says = [&](const std::string& line) { return shell(scratch_, line); };
     ASSERT_EQ(says("bake-normals bricks.png -o n.png --bumpiness 3 --no-sync; convert n.png -negate x.png").err, "");
-    EXPECT_NE(says("check-normals x.png").out.find("advice: That inverts blue alone. If bumps are dents then"),
+    EXPECT_NE(says("check-normals x.png")
+                  .out.find("advice: That inverts blue alone. If bumps look like dents after that, the whole picture "
+                            "was inverted: then also scale-normals FIXED.png --scale -1 --format rgb8 -o TURNED.png\n"),
               std::string::npos);
-    EXPECT_NE(says("repair-normals x.png --likely -o y.png --no-sync").err.find("if bumps are dents now"),
+    EXPECT_NE(says("repair-normals x.png --likely -o FIXED.png --no-sync").err.find("if bumps look like dents now"),
               std::string::npos);
+    EXPECT_EQ(says("scale-normals FIXED.png --scale -1 --format rgb8 -o TURNED.png --no-sync;"
+                   "compare-normals n.png TURNED.png --max 0.9")
+                  .code,
+              0)
+        << "255 - code is 128 where n has 127";
 }
 
 TEST_F(Advice, JpegThatNobodyChoseIsNamed) {

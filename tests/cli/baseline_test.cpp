@@ -63,6 +63,27 @@ TEST_F(Baselines, PagesShowWhatIsAccepted) {
     EXPECT_EQ(page.find("nothing found</span>"), std::string::npos);
 }
 
+// A damaged file is accepted as it is; one that breaks later is not.
+TEST_F(Baselines, KnowDamagedFilesByTheirBytes) {
+    scratch_.write("art/broken.dds", "DDS and no more");
+    EXPECT_EQ(check("check-normals art/broken.dds"), 4);
+    go("check-normals art/broken.dds art/down.dds --baseline-write art/known.json");
+    const Ran ran = shell(scratch_,
+                          "check-normals art/broken.dds --baseline art/known.json --junit j.xml "
+                          "--sarif s.json --report page.html");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("1 file: 0 errors, 0 warnings, 0 notes; 1 known and accepted"), std::string::npos)
+        << ran.out;
+    EXPECT_NE(scratch_.read("j.xml").find("failures=\"0\" errors=\"0\""), std::string::npos);
+    EXPECT_NE(scratch_.read("s.json").find("\"executionSuccessful\": true"), std::string::npos);
+    EXPECT_NE(scratch_.read("page.html").find("1 accepted</span>"), std::string::npos);
+    go("mv art/broken.dds art/renamed.dds; check-normals art/renamed.dds --baseline art/known.json");
+    scratch_.write("art/renamed.dds", "DDS and no less");
+    EXPECT_EQ(check("check-normals art/renamed.dds --baseline art/known.json"), 4);
+    scratch_.write("art/down.dds", "DDS and no less");
+    EXPECT_EQ(check("check-normals art/down.dds --baseline art/known.json"), 4) << "a map that broke";
+}
+
 // Files are as they were given: relative to the folder of the run.
 TEST_F(Baselines, OfVersion1AreStillRead) {
     scratch_.write("art/old.json",

@@ -45,6 +45,23 @@ TEST_F(CheckFolders, StandForTheirPictures) {
     EXPECT_TRUE(has(none.err, "empty: no file in this folder is a picture")) << none.err;
 }
 
+// A tree is checked as its artists made it, before and after a build; what a build made is checked if it is named.
+TEST_F(CheckFolders, LeaveOutWhatABuildMadeOfThem) {
+    scratch_.write("normals.toml", R"(version = 1
+out-dir = "built"
+[[rule]]
+match = "art/**"
+steps = [{ pack = {} }]
+)");
+    go("build-normals --no-sync");
+    const Ran ran = check(". --disable N105");
+    EXPECT_TRUE(has(lines_of(ran.out).back(), "3 files: 0 errors")) << ran.out << ran.err;
+    EXPECT_TRUE(has(lines_of(ran.out).back(), "; 2 files left out, which build-normals made")) << ran.out;
+    EXPECT_EQ(lines_of(check("built --disable N105").out).back().substr(0, 7), "2 files");
+    go("mkdir -p alone; echo 'not a state' > art/.x.state");
+    EXPECT_EQ(lines_of(check("art --disable N105").out).back().substr(0, 7), "2 files");
+}
+
 TEST_F(CheckFolders, WarningsPassAndTheLastLineSaysSo) {
     const Ran ran = check("art/up.dds --require mips=3 --severity N109=warning");
     EXPECT_EQ(ran.code, 0);

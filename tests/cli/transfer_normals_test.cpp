@@ -275,8 +275,8 @@ TEST_F(TransferNormals, OverlapsAreAWarningOrAnError) {
     scratch_.write("twice.obj", std::string(kSheetObj) + "f 1/1/1 2/2/2 5/5/5\n");
     const Ran ran = go({"twice.obj", "sheet.obj", "-o", "x.png"});
     EXPECT_EQ(ran.code, 0);
-    EXPECT_NE(ran.err.find("twice.obj: several triangles cover the same texel in"), std::string::npos) << ran.err;
-    refuses({"twice.obj", "sheet.obj", "-o", "y.png", "--overlap", "error"}, 4, "several triangles cover");
+    EXPECT_NE(ran.err.find("twice.obj: UVs overlap in"), std::string::npos) << ran.err;
+    refuses({"twice.obj", "sheet.obj", "-o", "y.png", "--overlap", "error"}, 4, "UVs overlap in");
 }
 
 }  // namespace

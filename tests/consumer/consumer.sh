@@ -140,6 +140,9 @@ install)
     if [ ! -e "$build/oiio" ]; then files+=$'\n'$no_oiio; fi
     if [ -e "$build/libtex.a" ]; then files+=$'\n'$static_files; fi
     check_files "$stage" "$files"
+    while read -r link; do
+        [ -e "$stage/share/doc/libtex/$link" ] || fail "README.md points to $link, which is not installed"
+    done < <(grep -o ']([^)]*)' "$stage/share/doc/libtex/README.md" | tr -d '])(' | grep -v '^http')
     ;;
 move)
     cp -a "$stage" "$scratch/elsewhere"

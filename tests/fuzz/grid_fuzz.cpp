@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto file = tex::InputFile::from_memory("fuzz.bil", {end, bytes + size});
     if (!file) return 0;
     for (const bool is_float : {false, true}) {
-        const auto place = tex::read_bil_header(header, "fuzz.hdr", is_float, options);
+        const auto place = tex::read_bil_header(header, "fuzz.hdr", is_float, *file->size(), options);
         if (!place && place.error().reason.empty()) std::abort();
         if (!place || place->end() > *file->size()) continue;
         read_rows(tex::open_raw_rows(*file, *place), tex::FileValues::unit);

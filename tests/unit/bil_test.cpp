@@ -75,6 +75,19 @@ TEST_F(Bil, ReadsEveryTypeAndOrder) {
     EXPECT_EQ(texels_of(read("NBITS 32\nBYTEORDER M\nPIXELTYPE FLOAT", floats)), "1. -10. 0. 1000.");
 }
 
+// GDAL 3.6.2 (EHdr) reads the same, as UInt16 and Float32; with NBITS it reads what that says.
+TEST_F(Bil, TheSizeTellsTheBitsIfTheHeaderDoesNot) {
+    const std::string words("\1\2\3\4\xff\xfe\x80\0", 8);
+    const auto image = read("BYTEORDER M", words);
+    EXPECT_EQ(texels_of(image), "258. 772. 65534. 32768.");
+    EXPECT_EQ(image->remark, "its header has no nbits, and its size means 16 bits");
+    EXPECT_EQ(texels_of(read("BYTEORDER M\nPIXELTYPE SIGNEDINT", words)), "258. 772. -2. -32768.");
+    EXPECT_EQ(texels_of(read("BYTEORDER M", words + "abc")), "258. 772. 65534. 32768.") << "a few bytes more";
+    EXPECT_EQ(texels_of(read("BYTEORDER M\nNBITS 8", words)), "1. 2. 3. 4.");
+    const std::string floats("\x3f\x80\0\0\xc1\x20\0\0\0\0\0\0\x44\x7a\0\0", 16);
+    EXPECT_EQ(texels_of(read("BYTEORDER M", floats)), "1. -10. 0. 1000.");
+}
+
 // GDAL 3.6.2 and 3.13.3 (EHdr) read 258 and 772 from these bytes, and 2.3879393e-38 from the floats.
 TEST_F(Bil, TheHighByteIsFirstIfTheHeaderHasNoOrder) {
     const std::string bytes("\1\2\3\4\5\6\7\10\11\12\13\14\15\16\17\20", 16);

@@ -122,6 +122,32 @@ TEST(Exr, RefusesSubsampledChannels) {
     EXPECT_EQ(image.error().reason, "the channel RY is subsampled");
 }
 
+// OpenImageIO gives the same texels, and the place among its other values.
+TEST(Exr, ACropIsReadAloneAndSaysSo) {
+    const auto remark_of = [](const Imath::Box2i& data) {
+        Imf::Header header(16, 16);
+        header.dataWindow() = data;
+        header.channels().insert("Y", Imf::Channel(Imf::FLOAT));
+        Bytes bytes;
+        ExrSink sink(bytes);
+        std::vector<float> values(1024);
+        {
+            Imf::OutputFile file(sink, header);
+            Imf::FrameBuffer buffer;
+            buffer.insert("Y", Imf::Slice::Make(Imf::FLOAT, values.data(), data));
+            file.setFrameBuffer(buffer);
+            file.writePixels(data.max.y - data.min.y + 1);
+        }
+        const Result<Image> image = read(bytes);
+        return image ? std::to_string(image->extent().width) + ": " + image->remark : image.error().reason;
+    };
+    EXPECT_EQ(remark_of({{0, 0}, {15, 15}}), "16: ");
+    EXPECT_EQ(remark_of({{4, 2}, {11, 9}}),
+              "8: holds 8x8 texels from column 4, row 2 of a picture of 16x16 (data window and display window), which "
+              "are read alone");
+    EXPECT_EQ(remark_of({{-2, -2}, {17, 17}}).substr(0, 46), "20: holds 20x20 texels from column -2, row -2 ");
+}
+
 TEST(Exr, OfSeveralPartsReadsTheFirst) {
     std::vector<Imf::Header> headers(2, Imf::Header(4, 3));
     headers[1].dataWindow() = Imath::Box2i({0, 0}, {7, 7});

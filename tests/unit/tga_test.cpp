@@ -93,7 +93,7 @@ TEST(Tga, ReadsColoursOfEveryDepthOriginAndPacking) {
 TEST(Tga, ReadsGreyWithAndWithoutAlpha) {
     for (const int depth : {8, 16}) {
         for (const int alpha : {0, 8}) {
-            if (depth == 8 && alpha == 8) continue;
+            if (depth != alpha + 8) continue;
             TgaFile file;
             file.type = 3;
             file.depth = depth;
@@ -226,6 +226,14 @@ TEST(Tga, SaysWhatIsWrong) {
     file.type = 3;
     file.depth = 24;
     EXPECT_EQ(reason_of(file.make()), "a grey TGA of more than 16 bits");
+    file.depth = 16;
+    for (const int attribute : {-2, -1, 0}) {
+        file.attribute_type = attribute;
+        EXPECT_EQ(reason_of(file.make()),
+                  "a grey TGA of 16 bits that counts no bits of alpha: its texels are grey and alpha, or one number");
+    }
+    file.attribute_type = 1;  // the second byte means nothing
+    EXPECT_EQ(reason_of(file.make()), "none");
     file.type = 2;
     file.alpha_bits = 0x40;
     EXPECT_EQ(reason_of(file.make()), "a TGA with interleaved rows");

@@ -56,9 +56,9 @@ Result<void> ConversionOptions::judge(Job& job, const ConvertedMap& converted, c
     job.report["overlaps"] = converted.overlaps;
     job.report["moved"] = converted.moved;
     job.report["backward"] = converted.backward;
-    const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", converted.overlaps);
+    const std::string overlaps = fmt::format("UVs overlap in {} places", converted.overlaps);
     if (converted.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, mesh, overlaps};
-    if (converted.overlaps > 0) job.warn(overlaps + "; the first one decides", mesh);
+    if (converted.overlaps > 0) job.warn(overlaps + "; the triangle that comes first in the mesh decides there", mesh);
     if (converted.unmatched > 0) {
         job.warn(fmt::format("covers {} texels that the mesh of the input does not cover: their UVs differ",
                              converted.unmatched),

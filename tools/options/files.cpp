@@ -126,7 +126,13 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
         if (reads_folders && is_folder(input)) {
             auto found = pictures_below(input);
             if (!found) return found.error();
-            left_out += found->others;
+            other_files += found->others;
+            const std::set<std::string> made = made_in ? made_in(input) : std::set<std::string>();
+            const auto is_made = [&](const std::string& file) {
+                return made.count(slashed(fs::path(file).lexically_normal())) > 0;
+            };
+            if (!std::all_of(found->files.begin(), found->files.end(), is_made))
+                made_files += static_cast<std::int64_t>(std::erase_if(found->files, is_made));
             for (std::string& file : found->files) inputs.push_back({std::move(file)});
             continue;
         }

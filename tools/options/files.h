@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,9 +29,12 @@ struct FileOptions {
     bool update = false;
     bool no_clobber = false;
     bool no_sync = false;
-    bool reads_folders = false;         // folders among the inputs stand for the pictures in them
-    mutable std::int64_t left_out = 0;  // after list_inputs(): the other files of such folders
-    bool tiles = false;                 // inputs are tiles of terrains, see batch/grid.h
+    bool reads_folders = false;  // folders among the inputs stand for the pictures in them
+    // The pictures of a folder that are made from others in it, as paths; empty: none are.
+    std::function<std::set<std::string>(const std::string& folder)> made_in = {};
+    // After list_inputs(): what was left out of such folders.
+    mutable std::int64_t other_files = 0, made_files = 0;
+    bool tiles = false;  // inputs are tiles of terrains, see batch/grid.h
     // Whether the run writes nothing, so that no output need be named; empty: it writes.
     std::function<bool()> writes_nothing = {};
 

@@ -177,9 +177,9 @@ Result<void> RayOptions::judge(Job& job, const TransferredMaps& maps, const std:
     job.report["rays"] = maps.rays;
     job.report["reach"] = {{"front", maps.front}, {"back", maps.back}, {"diagonal", maps.diagonal}};
     job.report["heights"] = {{"lowest", maps.lowest}, {"highest", maps.highest}};
-    const std::string overlaps = fmt::format("several triangles cover the same texel in {} places", maps.overlaps);
+    const std::string overlaps = fmt::format("UVs overlap in {} places", maps.overlaps);
     if (maps.overlaps > 0 && overlap_ == Overlap::error) return Error{ErrorCode::bad_option, job.task.input, overlaps};
-    if (maps.overlaps > 0) job.warn(overlaps + "; the first one decides");
+    if (maps.overlaps > 0) job.warn(overlaps + "; the triangle that comes first in the mesh decides there");
     judge_missed(job, maps, remedy);
     if (maps.behind > 0) {
         std::string sentence =

@@ -302,7 +302,15 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
         job.warn(fmt::format("without --roughness-in, the material's own roughness is 0, a mirror; {} has nothing else",
                              packed.levels == 1 ? "the only level" : "the base level"),
                  path);
-    } else if (packed.levels == 1) {
+    }
+    if (into_.file.empty() && parts_for(job.task)[3] == RoughnessPart::smoothness) {
+        job.warn(
+            fmt::format("red is 0, which {} reads as no metal; for a metal, --roughness-into METAL:a keeps the red "
+                        "of its own texture",
+                        job.task.engine->name),
+            path);
+    }
+    if (is_known && packed.levels == 1) {
         job.warn("one level loses no variance, so its roughness is the material's own, unchanged", path);
     }
     Json map;

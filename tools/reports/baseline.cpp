@@ -100,7 +100,7 @@ Result<Baseline> Baseline::parse(const std::string& path, const std::string& tex
 }
 
 void Baseline::add(const CheckReport& report, const std::string& content) {
-    if (report.error) return;
+    if (report.error && content.empty()) return;
     for (const Finding& finding : report.findings)
         insert({name_of(report), std::string(finding.rule->id), level_of(finding), content_with_map(report, content)});
 }
@@ -116,13 +116,12 @@ std::size_t Baseline::gone() const {
 }
 
 std::vector<Finding> Baseline::accept(CheckReport& report, const std::string& content) {
-    if (report.error) return {};
     const std::string file = name_of(report), with_map = content_with_map(report, content);
     seen_.insert(file);
     const auto is_known = [&](const Finding& finding) {
         const std::string id(finding.rule->id);
         const int level = level_of(finding);
-        const bool by_file = by_file_.count({file, id, level}) > 0,
+        const bool by_file = !report.error && by_file_.count({file, id, level}) > 0,
                    by_content = by_content_.count({with_map, id, level}) > 0;
         if (by_file) matched_.emplace(file, id, level);
         if (by_content) matched_.emplace(with_map, id, level);

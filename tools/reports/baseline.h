@@ -34,10 +34,10 @@ public:
     // Reads from memory. `path` appears in messages. Errors: bad_data.
     [[nodiscard]] static Result<Baseline> parse(const std::string& path, const std::string& text);
 
-    // Adds the findings of the report to the known ones, unless the file could not be read. `content` is that of its
-    // file, or empty.
+    // Adds the findings of the report to the known ones. `content` is that of its file, or empty; a file that is no
+    // picture (CheckReport::error) is known by that alone, so that one that breaks later is not accepted.
     void add(const CheckReport& report, const std::string& content);
-    // Removes known findings from the report, and returns them. Those of a file that cannot be read are never known.
+    // Removes known findings from the report, and returns them.
     [[nodiscard]] std::vector<Finding> accept(CheckReport& report, const std::string& content);
     [[nodiscard]] std::string text() const;
 

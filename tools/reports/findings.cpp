@@ -184,7 +184,7 @@ std::string rule_text(const Rule& rule) {
 
 void CheckTotals::add(const CheckReport& report, int its_known) {
     known += its_known;
-    if (report.error) ++unreadable;
+    if (report.error && its_known == 0) ++unreadable;
     for (const Finding& finding : report.findings) ++by_severity[static_cast<int>(finding.severity)];
 }
 
@@ -194,9 +194,11 @@ std::string CheckTotals::text() const {
                                    count(by_severity[1], "warning"), count(by_severity[0], "note"));
     if (unreadable > 0) line += fmt::format("; {} unreadable", unreadable);
     if (known > 0) line += fmt::format("; {} known and accepted", known);
-    if (left_out > 0)
-        line += fmt::format("; {} left out, which {} no picture{}", count(static_cast<int>(left_out), "file"),
-                            left_out == 1 ? "is" : "are", left_out == 1 ? "" : "s");
+    if (other_files > 0)
+        line += fmt::format("; {} left out, which {} no picture{}", count(static_cast<int>(other_files), "file"),
+                            other_files == 1 ? "is" : "are", other_files == 1 ? "" : "s");
+    if (made_files > 0)
+        line += fmt::format("; {} left out, which build-normals made", count(static_cast<int>(made_files), "file"));
     if (!fails && by_severity[2] == 0 && by_severity[1] > 0) line += "; warnings pass, --fail-on warning refuses them";
     return line;
 }

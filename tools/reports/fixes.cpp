@@ -10,21 +10,15 @@
 
 #include <fmt/format.h>
 #include <tex/file.h>
-#include <tex/repair.h>
 
 #include "cli/text.h"
 #include "options/output.h"
+#include "reports/repair_fixes.h"
 #include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
 namespace {
-
-void replace_word(std::string& text, std::string_view word, std::string_view by) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) {
-        text.replace(at, word.size(), by);
-    }
-}
 
 // Whether a texel of `made` holds all that is stored: x and y where they were (ATI2 is BC5 with y first), z if it was
 // stored. ASTC's layout is always the same, and floats may hold z too.
@@ -86,13 +80,6 @@ std::optional<Target> target_for(const std::string& file, Encoding encoding, boo
         }
     }
     return std::nullopt;
-}
-
-bool is_any_of(std::string_view id, std::initializer_list<std::string_view> ids) {
-    for (const std::string_view other : ids) {
-        if (id == other) return true;
-    }
-    return false;
 }
 
 // The rules about a direction of green that the texels contradict.
@@ -254,15 +241,20 @@ std::string filled_in(std::string fix, const Target& target, const CheckReport& 
 std::string mirror_advice(std::string_view id, const Target& target, const CheckReport& report,
                           const Requirements& require) {
     if (!is_about_mirrors(id) || (report.pair && report.pair->decides())) return {};
-    return "If dents become bumps, red is mirrored instead, as in a picture that was flipped: " +
+    return "If bumps look like dents after that, red was mirrored instead, as in a picture that was flipped: " +
            filled_in(std::string(kRedFix), target, report, require) +
            "; check-normals --height FILE decides between the two, and so does a look at the occlusion map or the mesh";
 }
 
-// The extension of a model that can be written again with another map; empty if it cannot.
-std::string type_of_model(const CheckReport& report) {
-    const std::string type = lower_case(report.file.substr(std::min(report.file.rfind('.'), report.file.size())));
-    return !report.material.empty() && (type == ".glb" || type == ".gltf") ? type : "";
+// What to do if all channels are inverted: blue is no longer, after the fix.
+std::string inverted_advice(const CheckReport& report, const Requirements& require) {
+    const std::string text =
+        "That inverts blue alone. If bumps look like dents after that, the whole picture was inverted";
+    const auto target = report.map.empty() ? target_of("N220", report, require) : std::nullopt;
+    if (!target) return text + ": invert all of it in an image editor instead";
+    std::string command = filled_in("scale-normals FIXED --scale -1 --format SAME -o TURNED", *target, report, require);
+    replace_word(command, "TURNED", "TURNED" + extension_of(target->container));
+    return text + ": then also " + command;
 }
 
 // The command that writes the model again, with this map corrected.
@@ -287,62 +279,8 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
             true};
     if (is_about_mirrors(id) && !(report.pair && report.pair->decides())) {
         fix.advice =
-            "If dents become bumps, red is mirrored instead, as in a picture that was flipped: "
+            "If bumps look like dents after that, red was mirrored instead, as in a picture that was flipped: "
             "repair-normals --mirrored red writes the model with red inverted";
-    }
-    return fix;
-}
-
-}  // namespace
-
-namespace {
-
-constexpr std::string_view kRepair = "repair-normals FILE";
-constexpr const char* kInvertedAdvice =
-    "That inverts blue alone. If bumps are dents then, the whole picture was inverted: invert all of it in an image "
-    "editor instead";
-
-// The command for what repair-normals undoes and no other command does; empty for other findings. It keeps the format
-// and the data beside the normals.
-std::string repair_command(const Finding& finding, const CheckReport& report, const Requirements& require) {
-    CheckOptions checks;
-    checks.require = require;
-    const auto step = repair_of(finding, report, checks);
-    const std::string model = report.map.empty() ? "" : type_of_model(report);
-    if (!step || (!report.map.empty() && model.empty())) return {};
-    std::string text(finding.rule->fix);
-    if (finding.rule->id == "N308") {
-        text =
-            std::string(kRepair) + (step->certainty == RepairClass::likely ? " --likely --y WANTED" : "") + " -o FIXED";
-        replace_word(text, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
-    }
-    if (!text.starts_with(kRepair)) return {};
-    if (step->certainty == RepairClass::likely && text.find("--likely") == std::string::npos)
-        text.insert(kRepair.size(), " --likely");
-    const std::optional<Container> own = container_of(report.file);
-    const bool is_kept = own && *own != Container::jpeg;
-    replace_word(text, "FIXED", "FIXED" + (model.empty() ? extension_of(is_kept ? *own : Container::png) : model));
-    const std::string material = model.empty() ? "" : " --material " + shell_word(report.material);
-    replace_word(text, "FILE", shell_file(report.file) + material);
-    return text;
-}
-
-// The command that gives the parts of a model the tangents of MikkTSpace; none for other findings.
-std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report) {
-    const std::string_view id = finding.rule->id;
-    const std::string type = report.map.empty() ? "" : type_of_model(report);
-    // Tangents mend what engines draw wrongly because there are none.
-    const bool lacks_tangents = id == "N808" && finding.message.find("no TANGENT") != std::string::npos;
-    if (type.empty() || !(lacks_tangents || is_any_of(id, {"N701", "N702", "N703", "N704", "N705", "N706"})))
-        return std::nullopt;
-    const std::string material = id == "N701" || id == "N808" ? "" : " --material " + shell_word(report.material);
-    Fix fix{
-        fmt::format("convert-normals {}{} --tangents mikktspace -o FIXED{}", shell_file(report.file), material, type),
-        true};
-    if (id == "N705") {
-        fix.advice =
-            "That is right if the map was baked for MikkTSpace on triangles, as most bakers do; leave the tangents if "
-            "it was baked for those of the file, as in Blender, which makes them on quads";
     }
     return fix;
 }
@@ -353,9 +291,10 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     const std::string_view id = finding.rule->id;
     if (!finding.fix_harms.empty()) return {"No command is printed, because " + finding.fix_harms + "."};
     if (auto fix = tangent_fix(finding, report)) return *fix;
-    if (std::string command = repair_command(finding, report, require); !command.empty())
-        return {std::move(command), true, id == "N220" ? kInvertedAdvice : ""};
-    if (finding.rule->fix.starts_with(kRepair)) return {"Export the map again from its source."};
+    if (auto fix = repair_fix(finding, report, require)) {
+        if (id == "N220") fix->advice = inverted_advice(report, require);
+        return *fix;
+    }
     if (!is_command(*finding.rule)) return {std::string(finding.rule->fix)};
     if (id == "N108" && !require.encoding) return {"Store the file in the format that is required."};
     if (report.more_data && !(carries_extras(*finding.rule, report) && target_of(id, report, require))) {

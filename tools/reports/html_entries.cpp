@@ -166,8 +166,9 @@ Result<HtmlEntry> check_entry(const CheckReport& report, const Requirements& req
         if (entry.words.find(word) == std::string::npos) entry.words += (entry.words.empty() ? "" : " ") + word;
     }
     if (report.findings.empty()) {
-        entry.words = report.error ? "error" : "clean";
-        if (report.error) entry.row += chip(Severity::error, report.error->reason);
+        const bool unreadable = report.error && waived.empty();
+        entry.words = unreadable ? "error" : "clean";
+        if (unreadable) entry.row += chip(Severity::error, report.error->reason);
         if (!report.error && waived.empty()) entry.row += "<span class=\"chip clean\">nothing found</span>";
     }
     if (!waived.empty()) entry.row += fmt::format("<span class=\"chip clean\">{} accepted</span>", waived.size());
@@ -186,7 +187,7 @@ Result<HtmlEntry> check_entry(const CheckReport& report, const Requirements& req
         auto list = list_html(report.findings, report, require, has_marks && map != nullptr);
         if (!list) return list.error();
         entry.body += *list;
-    } else if (!report.error) {
+    } else if (!report.error || !waived.empty()) {
         entry.body += waived.empty() ? "<p class=\"nothing\">Nothing found.</p>\n"
                                      : "<p class=\"nothing\">Nothing found that the baseline does not accept.</p>\n";
     }

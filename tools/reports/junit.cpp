@@ -43,7 +43,7 @@ std::string test_case(const JudgedReport& judged) {
     std::erase_if(other.findings, fails);
     std::string xml = fmt::format("    <testcase classname=\"check-normals\" name=\"{}\" time=\"{:.3f}\">\n",
                                   escaped(title_of(report)), judged.seconds);
-    if (report.error) {
+    if (judged.is_unreadable()) {
         xml += fmt::format("      <error type=\"{}\" message=\"{}\"/>\n", name_of(kErrorCodeNames, report.error->code),
                            escaped(report.error->reason));
     } else if (!failing.findings.empty()) {
@@ -51,7 +51,7 @@ std::string test_case(const JudgedReport& judged) {
         xml += fmt::format("      <failure type=\"{}\" message=\"{}\">{}</failure>\n", first.rule->id,
                            escaped(statement_of(first)), escaped(findings_text(failing, require)));
     }
-    if (!other.findings.empty() && !report.error) {
+    if (!other.findings.empty() && !judged.is_unreadable()) {
         xml += fmt::format("      <system-out>{}</system-out>\n", escaped(findings_text(other, require)));
     }
     return xml + "    </testcase>\n";
@@ -61,10 +61,10 @@ std::string test_case(const JudgedReport& judged) {
 
 std::string junit_text(const std::vector<JudgedReport>& reports) {
     const auto count = [&](auto holds) { return std::count_if(reports.begin(), reports.end(), holds); };
-    const auto errors = count([](const JudgedReport& judged) { return judged.report.error.has_value(); });
+    const auto errors = count([](const JudgedReport& judged) { return judged.is_unreadable(); });
     const auto failures = count([](const JudgedReport& judged) {
         const std::vector<Finding>& findings = judged.report.findings;
-        return !judged.report.error && std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+        return !judged.is_unreadable() && std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
             return finding.severity >= judged.fail_on;
         });
     });

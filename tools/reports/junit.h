@@ -18,6 +18,9 @@ struct JudgedReport {
     std::vector<Finding> waived = {};         // by the baseline
     double seconds = 0.0;                     // that the check took
     const Plane<float>* occlusion = nullptr;  // beside the map, for its pictures; must outlive the documents
+
+    // The file could not be read, and the baseline does not know its damage.
+    [[nodiscard]] bool is_unreadable() const { return report.error && waived.empty(); }
 };
 
 // One test case for each file: a failure with the findings at or above its `fail_on`; an error if the file could not be

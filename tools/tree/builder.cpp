@@ -221,10 +221,11 @@ void BuildRun::prune() {
         record = is_gone ? state_.outputs.erase(record) : std::next(record);
     }
     if (foreign.empty()) return;
-    console_.warning(
-        fmt::format("{} {} not removed, such as {}: no rule of this manifest gives an output such a name; remove "
-                    "what is not needed, or run once with a last rule that has the old match and name",
-                    foreign.size(), foreign.size() == 1 ? "file is" : "files are", printable(foreign.front())));
+    console_.warning(fmt::format(
+        "{} of an earlier run {} kept, such as {}: no rule of this manifest gives an output such a name, so "
+        "that --prune cannot know it is one; delete what you do not need",
+        foreign.size() == 1 ? "1 file" : fmt::format("{} files", foreign.size()), foreign.size() == 1 ? "is" : "are",
+        printable(foreign.front())));
 }
 
 // The folder of a file that a rule can make of this input, and its name there. Nothing if no rule can: whoever hands

@@ -133,15 +133,14 @@ public:
     [[nodiscard]] Baseline baseline(const std::string& path) const {
         Baseline baseline(path);
         for (std::size_t k = 0; k < files_.size(); ++k) {
-            if (!reports_[k].error) baseline.add(reports_[k], content_of(path_of(k)));
+            baseline.add(reports_[k], content_of(path_of(k)));
         }
         return baseline;
     }
 
     [[nodiscard]] int count_findings() const {
         int count = 0;
-        for (std::size_t k = 0; k < files_.size(); ++k)
-            count += reports_[k].error ? 0 : static_cast<int>(reports_[k].findings.size());
+        for (std::size_t k = 0; k < files_.size(); ++k) count += static_cast<int>(reports_[k].findings.size());
         return count;
     }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cli/file_status.h"
+#include "cli/text_file.h"
 #include "files/path_names.h"
 #include "files/system_error.h"
 
@@ -223,6 +224,24 @@ std::string path_from(const std::string& root, const std::string& name) {
 std::string state_beside(const std::string& file) {
     const std::filesystem::path path(file);
     return slashed(path.parent_path() / ("." + slashed(path.filename()) + ".state"));
+}
+
+std::set<std::string> files_made_by_builds(const std::string& folder) {
+    std::set<std::string> made;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        const std::string name = slashed(entry.path().filename());
+        if (!name.starts_with('.') || !name.ends_with(".state")) continue;
+        const std::string path = path_from(folder, name);
+        const auto text =
+            check_is_state(path) ? read_text_file(path, kMostOfRecord) : Result<std::string>(std::string());
+        if (!text) continue;
+        for (const auto& [output, record] : BuildState::parse(*text).outputs) {
+            for (const auto& [file, digest] : record.files)
+                made.insert(slashed(std::filesystem::path(path_from(folder, file)).lexically_normal()));
+        }
+    }
+    return made;
 }
 
 Result<void> check_is_state(const std::string& path) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -74,6 +75,9 @@ struct BuildState {
 
 // The path of the state of what `file` describes: .NAME.state beside it.
 [[nodiscard]] std::string state_beside(const std::string& file);
+
+// The files, as paths, that builds whose states are in `folder` have made: outputs, while their inputs lie beside them.
+[[nodiscard]] std::set<std::string> files_made_by_builds(const std::string& folder);
 
 // Checks that a state may be written to `path`: nothing is there, or a file that begins as a state does, is empty or
 // begins with zeros. Errors: io.

@@ -46,8 +46,8 @@ std::string contradiction(const CheckContext& context, YAxis wanted, const std::
     const YAxis shown = opposite_of(wanted);
     const auto& pair = context.pair;
     if (!pair || !pair->decides()) {
-        return "green points " + direction(shown) + says + direction(wanted) +
-               ", or red points left: one of the two is mirrored, and the slopes do not show which" +
+        return "either green points " + direction(shown) + says + direction(wanted) +
+               ", or red points left instead of right; from the slopes alone, the two look the same" +
                curl_text(context);
     }
     const std::string fit = " (correlation " + decimal(pair->correlation, 2) + " with them, as far as white is high)";

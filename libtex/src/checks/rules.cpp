@@ -264,13 +264,14 @@ constexpr Rule kTextureRules[] = {
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green or red points the other way than required.",
-     "Going around a closed path on a surface, slopes add up to zero. Those of this map do only if one of its channels "
-     "is turned over. Mostly it is green: y=up is OpenGL, Unity, Blender, glTF; y=down is DirectX, Unreal. But a "
-     "picture that was mirrored in an image editor, or whose red was inverted, fails in the same way, and turning "
-     "green over makes dents of its bumps. The slopes alone cannot tell the two apart. The height map can: "
-     "check-normals --height FILE. So can the occlusion map or the mesh, by eye: bumps are light in one and stand out "
-     "of the other. The correlation is 1 if the map fits y=up everywhere, -1 if it fits y=down; it counts from 0.2 or "
-     "-0.2 on, if parts of the map agree (confidence 0.99) and at least half of the texels hold normals. Lines and "
+     "The slopes along x and along y are those of one surface, so that each limits the other. Those of this map fit "
+     "together only if one of them is turned over. Mostly that is y: green up is OpenGL, Unity, Blender, glTF; green "
+     "down is DirectX, Unreal. But a picture that was mirrored in an image editor, or whose red was inverted, looks "
+     "the same, and turning its green over makes dents of its bumps. The height map tells the two apart: "
+     "check-normals --height FILE. So does a look at the occlusion map or the mesh: bumps are light in one and stand "
+     "out of the other. The correlation is 1 if the map fits y=up everywhere, -1 if it fits y=down; from 0.2 or "
+     "-0.2 on it counts, if parts of the map agree (confidence 0.99) and at least half of the texels hold normals. "
+     "Lines and "
      "bevels along the axes show nothing.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",

@@ -42,9 +42,10 @@ Result<std::unique_ptr<RowSource>> open_bil(InputFile& file, const ReadOptions& 
         if (!header) return header.error();
         const Result<std::vector<std::byte>> text = header->read_rest(kLongestHeader);
         if (!text) return text.error();
-        Result<RawTexels> place = read_bil_header(*text, header->path(), has_extension(file.path(), ".flt"), options);
-        if (!place) return place.error();
         if (const Result<void> settled = file.settle(largest_file(options)); !settled) return settled.error();
+        Result<RawTexels> place =
+            read_bil_header(*text, header->path(), has_extension(file.path(), ".flt"), *file.size(), options);
+        if (!place) return place.error();
         const std::int64_t left = *file.size() - place->end();
         if (left < 0) {
             return Error{ErrorCode::bad_data, file.path(),

@@ -92,8 +92,12 @@ Result<bool> is_big_endian(const BilWords& words) {
     return words.wrong(kBilByteOrder);
 }
 
-Result<RawSamples> samples_in(const BilWords& words, const std::optional<double>& no_data, bool is_float) {
-    const Result<std::int64_t> bits = count_in(words, kBilBits, 1, is_float ? 32 : 8);
+// Without the number of bits, the size of the file tells it, as in GDAL 3.6.2, for which 32 bits are then floats.
+Result<RawSamples> samples_in(const BilWords& words, const std::optional<double>& no_data, bool is_float,
+                              std::int64_t bytes) {
+    const bool is_guessed = words[kBilBits].empty() && (bytes == 2 || bytes == 4);
+    is_float = is_float || (is_guessed && bytes == 4);
+    const Result<std::int64_t> bits = count_in(words, kBilBits, 1, is_float ? 32 : is_guessed ? 8 * bytes : 8);
     if (!bits) return bits.error();
     const Result<bool> big_endian = is_big_endian(words);
     if (!big_endian) return big_endian.error();
@@ -139,7 +143,7 @@ GridPlace place_in(const BilWords& words, Extent extent) {
 }  // namespace
 
 Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std::string& path, bool is_float,
-                                  const ReadOptions& options) {
+                                  std::int64_t file_bytes, const ReadOptions& options) {
     const Result<BilWords> found =
         words_of(std::string_view(reinterpret_cast<const char*>(text.data()), text.size()), path);
     if (!found) return found.error();
@@ -155,7 +159,8 @@ Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std:
 
     const std::optional<double> no_data = number_in(words[kBilNoData]);
     if (!no_data && !words[kBilNoData].empty()) return words.wrong(kBilNoData);
-    const Result<RawSamples> samples = samples_in(words, no_data, is_float);
+    const Result<RawSamples> samples =
+        samples_in(words, no_data, is_float, std::max<std::int64_t>(0, file_bytes - *skip) / extent->texels());
     if (!samples) return samples.error();
     const Result<std::int64_t> pitch = pitch_in(words, *width * static_cast<std::int64_t>(samples->bytes()));
     if (!pitch) return pitch.error();
@@ -168,6 +173,11 @@ Result<RawTexels> read_bil_header(const std::vector<std::byte>& text, const std:
         place.remark =
             "its header has no byteorder, so the high byte is read first; \"byteorder I\" there means the low "
             "byte first";
+    if (words[kBilBits].empty() && samples->bits > 8 && samples->kind != SampleKind::floating) {
+        place.remark += (place.remark.empty() ? "" : "; ") +
+                        std::string("its header has no nbits, and its size means ") + std::to_string(samples->bits) +
+                        " bits";
+    }
     return place;
 }
 

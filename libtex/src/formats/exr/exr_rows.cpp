@@ -27,7 +27,8 @@ namespace {
 class ExrRows final : public RowSource {
 public:
     // Rows of a level.
-    ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level);
+    ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level,
+            const std::string& remark = {});
 
     [[nodiscard]] int rows_together() const override { return reader_->rows_together(level_); }
     [[nodiscard]] bool is_random() const override { return true; }
@@ -49,7 +50,8 @@ private:
     bool has_whole_numbers_ = false;  // uint stays what it is
 };
 
-ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level)
+ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel>& channels, int level,
+                 const std::string& remark)
     : reader_(std::move(reader)), level_(level) {
     const Extent extent = reader_->extent(level);
     std::vector<std::string> names;
@@ -62,6 +64,7 @@ ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel
         bytes += (size + kAlignment - 1) / kAlignment * kAlignment;
     }
     wanted_.assign(planes_.size(), true);
+    describe_remark(remark);
     describe(extent, std::move(names), bytes);
     const auto all = [&](Imf::PixelType type) {
         return std::all_of(channels.begin(), channels.end(),
@@ -103,8 +106,21 @@ struct OpenedPart {
     Imf::Header header;  // as the file has it
     std::shared_ptr<ExrReader> reader;
     std::vector<ExrChannel> channels;
-    std::string remark;  // of ExrLayer
+    std::vector<std::string> remarks;
 };
+
+// That a part holds texels for a piece of its picture only, or beyond it: programs differ in what they make of that.
+std::string window_text(const Imf::Header& header) {
+    const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
+    if (data == display) return {};
+    const auto size = [](const Imath::Box2i& window) {
+        return std::to_string(std::int64_t{window.max.x} - window.min.x + 1) + "x" +
+               std::to_string(std::int64_t{window.max.y} - window.min.y + 1);
+    };
+    return "holds " + size(data) + " texels from column " + std::to_string(std::int64_t{data.min.x} - display.min.x) +
+           ", row " + std::to_string(std::int64_t{data.min.y} - display.min.y) + " of a picture of " + size(display) +
+           " (data window and display window), which are read alone";
+}
 
 // Whether a decoded part is what its header announced: it has the same texels and, if any are used, the same levels.
 bool is_same_picture(const Imf::Header& decoded, const Imf::Header& announced) {
@@ -139,8 +155,11 @@ Result<OpenedPart> open_layer(InputFile& file, const ReadOptions& options) {
     if (!layer) return std::move(layer).error();
     Result<std::shared_ptr<ExrReader>> reader = open_part(file, *headers, layer->part, options);
     if (!reader) return std::move(reader).error();
-    return OpenedPart{(*headers)[layer->part], std::move(*reader), std::move(layer->channels),
-                      std::move(layer->remark)};
+    OpenedPart opened{(*headers)[layer->part], std::move(*reader), std::move(layer->channels), {}};
+    for (std::string remark : {std::move(layer->remark), window_text(opened.header)}) {
+        if (!remark.empty()) opened.remarks.push_back(std::move(remark));
+    }
+    return opened;
 }
 
 }  // namespace
@@ -149,7 +168,9 @@ Result<std::unique_ptr<RowSource>> open_exr_rows(InputFile& file, const ReadOpti
     return no_throw([&]() -> Result<std::unique_ptr<RowSource>> {
         Result<OpenedPart> opened = open_layer(file, options);
         if (!opened) return std::move(opened).error();
-        return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(opened->reader, opened->channels, 0));
+        std::string remark;
+        for (const std::string& each : opened->remarks) remark += (remark.empty() ? "" : "; ") + each;
+        return std::unique_ptr<RowSource>(std::make_unique<ExrRows>(opened->reader, opened->channels, 0, remark));
     });
 }
 
@@ -162,7 +183,7 @@ Result<TextureRows> open_exr_texture_rows(InputFile& file, const ReadOptions& op
         if (!described) return std::move(described).error();
         TextureRows texture;
         texture.head = std::move(described->head);
-        if (!opened->remark.empty()) texture.head.remarks.push_back(opened->remark);
+        for (const std::string& remark : opened->remarks) texture.head.remarks.push_back(remark);
         for (int level = 0; level < described->levels; ++level)
             texture.levels.push_back(std::make_unique<ExrRows>(opened->reader, described->channels, level));
         texture.take_planes_in_order();

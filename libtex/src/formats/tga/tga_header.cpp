@@ -104,6 +104,12 @@ bool has_alpha(const Fields& fields, TgaTexels texels, const std::vector<std::by
     return fields.depth == 32;  // many programs do not count the bits
 }
 
+// Whether nothing says what the second byte of a grey texel is. Programs read two numbers, or one of 16 bits.
+bool has_unknown_byte(const Fields& fields, TgaTexels texels, const std::vector<std::byte>& extension) {
+    const bool is_told = !extension.empty() && static_cast<AlphaType>(extension[kTgaAlphaType]) != AlphaType::none;
+    return texels == TgaTexels::grey && fields.depth == 16 && (fields.descriptor & kAlphaBits) == 0 && !is_told;
+}
+
 void take_mark(const std::vector<std::byte>& extension, TgaHeader& header) {
     if (extension.empty()) return;
     for (std::size_t line = 0; line < 4 && header.normal_mark.empty(); ++line) {
@@ -138,6 +144,11 @@ Result<TgaHeader> read_tga_header(const InputFile& file, const ReadOptions& opti
     }
     const Result<std::vector<std::byte>> extension = read_extension(file);
     if (!extension) return extension.error();
+    if (has_unknown_byte(fields, header.texels, *extension)) {
+        return Error{
+            ErrorCode::unsupported, file.path(),
+            "a grey TGA of 16 bits that counts no bits of alpha: its texels are grey and alpha, or one number"};
+    }
     const int color_depth = header.texels == TgaTexels::indices ? whole_bytes(fields.palette_depth) : header.depth;
     header.bits = header.texels != TgaTexels::grey && color_depth == 16 ? 5 : 8;
     header.channels =
