@@ -12,6 +12,7 @@
 #include <tex/pack.h>
 #include <tex/types.h>
 
+#include "checks/channel_order.h"
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
 #include "rows/extra_rows.h"
@@ -68,6 +69,7 @@ Result<void> decide_kind(CheckContext& context) {
         const Extent extent = stored.extent();
         const bool is_small = std::min(extent.width, extent.height) < kLeastSampledSide;
         if (of_surface == Kind::no_map || (is_small && !stored.has_z())) return of_surface;
+        if (context.kind_measure.is_flat()) return kind;  // one colour: edges between two colours have no slopes
         Stored flat = stored;
         for (Component& held : flat.swizzle) held = held == Component::z ? Component::other : held;
         const auto curl = measure_curl(flat, context.execution);
@@ -116,14 +118,15 @@ Result<void> measure(CheckContext& context) {
     auto image = decode_planes(context.texture, context.texture.levels.front(), needs, context.execution);
     if (!image) return image.error();
     context.base = std::move(*image);
-    const Result<Swizzle> swizzle = context.options.swizzle ? Result<Swizzle>(*context.options.swizzle)
-                                                            : guess_swizzle(context.texture, context.execution);
-    if (!swizzle) return swizzle.error();
+    Swizzle swizzle = context.texture.swizzle;
     if (context.options.swizzle) {
-        if (auto held = sources_of(*swizzle, (1u << context.base.planes.size()) - 1); !held) return held.error();
+        swizzle = *context.options.swizzle;
+        if (auto held = sources_of(swizzle, (1u << context.base.planes.size()) - 1); !held) return held.error();
+    } else if (needs_texels_for_layout(context.texture)) {
+        swizzle = layout_shown(context.texture, context.base);
     }
-    context.stored = {&context.base, *swizzle,
-                      stores_signed(context.base, *swizzle, range_of(context.texture.normal_encoding, {})),
+    context.stored = {&context.base, swizzle,
+                      stores_signed(context.base, swizzle, range_of(context.texture.normal_encoding, {})),
                       format_info(context.texture.format).has_blocks()};
     const Stored& stored = context.stored;
     context.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;

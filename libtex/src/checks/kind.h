@@ -48,6 +48,7 @@ struct KindMeasure {
     double null = 0.0;                     // share of vectors with hardly any length
     bool alpha_varies = false;
     double z_range = 0.0;  // of the stored values of z
+    [[nodiscard]] bool is_flat() const;  // x and y vary by no more than noise
 };
 
 enum class Kind {
