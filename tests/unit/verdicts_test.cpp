@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -269,6 +270,38 @@ TEST(Verdicts, FaintColorsWithHeightsInAlphaAreNoNormalMap) {
         return std::array<int, 4>{c + 2 * hue, c, c - hue, 128 + (shade(j + 40, i) - 128) / 2};
     });
     EXPECT_EQ(ids(codes), Ids{"N214"});
+}
+
+// Colours of two hues that are centred and do not follow each other, with a blue that is at times small. No texel is
+// level, as some are in every map.
+TEST(Verdicts, ColorsWithoutALevelTexelAreNoNormalMap) {
+    const Codes codes = picture(256, 3, [](int i, int j) {
+        const int c = (shade(i, j) - 128) / 5;
+        if (j < 32) return std::array<int, 4>{200 + c, 128 + c, 10 + c / 4, 255};
+        return std::array<int, 4>{104 + c / 3, 148 + c, 168 + c, 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N214"});
+}
+
+// An environment map: floats without a value below 0.
+TEST(Verdicts, ColorsOfHighRangeAreNoNormalMap) {
+    Texture texture;
+    texture.format = Format::rgb32_float;
+    std::vector<float> values;
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const auto bright = static_cast<float>(shade(i, j)) / 96.0f;
+            values.insert(values.end(), {1.2f * bright, bright, 0.7f * bright});
+        }
+    }
+    Level level;
+    level.extent = {64, 64};
+    level.bytes.resize(values.size() * sizeof(float));
+    std::memcpy(level.bytes.data(), values.data(), level.bytes.size());
+    texture.levels.push_back(std::move(level));
+    const auto report = check("picture", texture);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(ids_of(*report, Severity::warning), Ids{"N214"});
 }
 
 // One colour beside white, as of a logo. The edges between them look like slopes.

@@ -57,10 +57,27 @@ Result<void> count_seen(CheckContext& context) {
     return is_found ? count() : Result<void>();
 }
 
+// Floats that are taken for components without (n + 1) / 2: colours of high range have no x or y below 0, and no map
+// whose normals all lean into one quadrant holds few unit vectors.
+bool are_bright_colors(const CheckContext& context) {
+    constexpr double kMostOff = 0.9;
+    const Stored& stored = context.stored;
+    const TexelCounts& counts = context.counts;
+    const auto is_positive = [&](Component component) {
+        return counts.low[static_cast<std::size_t>(stored.channel(component))] >= 0.0f;
+    };
+    return stored.has_z() && format_info(context.texture.format).sample == SampleKind::floating &&
+           is_positive(Component::x) && is_positive(Component::y) && counts.share(Property::off_length) > kMostOff;
+}
+
 // Decides whether there are normals at all, and which channels hold them.
 Result<void> decide_kind(CheckContext& context) {
     Stored& stored = context.stored;
-    if (context.options.any_length || stored.is_signed || context.constant) return {};
+    if (context.options.any_length || context.constant) return {};
+    if (stored.is_signed) {
+        if (!context.options.swizzle && are_bright_colors(context)) context.kind = Kind::no_map;
+        return {};
+    }
     const auto with = [&](const Background* without) -> Result<Kind> {
         context.kind_measure = measure_kind(stored, without);
         Kind kind = kind_of(context.kind_measure, stored, false);
