@@ -304,6 +304,14 @@ TEST(Verdicts, ColorsOfHighRangeAreNoNormalMap) {
     EXPECT_EQ(ids_of(*report, Severity::warning), Ids{"N214"});
 }
 
+// Roughness between occlusion and metalness of 1 is no y beside a lost x.
+TEST(Verdicts, RoughnessBetweenOnesIsNoNormalMap) {
+    const Codes codes = picture(128, 3, [](int i, int j) {
+        return std::array<int, 4>{255, 152 + (shade(i, j) - 128) / 3, 255, 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N216"});
+}
+
 // One colour beside white, as of a logo. The edges between them look like slopes.
 TEST(Verdicts, ALogoInTwoColorsIsNoNormalMap) {
     const Codes codes = picture(256, 3, [](int i, int j) {

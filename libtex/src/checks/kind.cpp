@@ -326,7 +326,7 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (is_x_ray) return Kind::x_ray;
     const bool has_alpha = planes.size() > 3 && !is_one(planes[3], 1.0f);
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
-        std::abs(m.as(Reading::as_stored).y) < thresholds::kCentred)
+        std::abs(m.as(Reading::as_stored).y) < thresholds::kLostCentred)
         return Kind::x_lost;
     if (!are_two_components(m, is_surface)) return Kind::no_map;
     // Averaged vectors, and those whose lengths are occlusion, are short; but they keep facing outwards.

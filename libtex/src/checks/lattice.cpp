@@ -83,15 +83,14 @@ std::vector<double> detail_of(const std::vector<double>& bins) {
     return detail;
 }
 
-// How much of the detail lies at the teeth of a comb. It has a tooth at 0, so only the cosine is used, which is the same
-// on both sides of 0. All angles are multiples of one, whose cosines are computed once: a small map would spend most of
-// its time on them.
+// How much of the detail lies at the teeth of a comb. It has a tooth at 0, so only the cosine is used, which is the
+// same on both sides of 0. All angles are multiples of one, whose cosines are computed once: a small map would spend
+// most of its time on them.
 double comb_of(const std::vector<double>& detail, double rate) {
     constexpr int kAngles = static_cast<int>(2.0 * kSlopeBins / kRateStep);  // of a whole turn
     static const std::vector<double> cosines = [] {
         std::vector<double> all(kAngles);
-        for (int k = 0; k < kAngles; ++k)
-            all[static_cast<std::size_t>(k)] = math::cos(2.0 * math::kPi * k / kAngles);
+        for (int k = 0; k < kAngles; ++k) all[static_cast<std::size_t>(k)] = math::cos(2.0 * math::kPi * k / kAngles);
         return all;
     }();
     const int turns = static_cast<int>(rate / kRateStep);

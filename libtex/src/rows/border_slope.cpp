@@ -14,8 +14,7 @@ constexpr float kSteepestCounted = 64.0f;  // steeper ones are no more of a wall
 // The ratio of one direction. `texels`: how many each sum has.
 double ratio_of(const std::vector<std::int64_t>& sums, int texels) {
     const std::int64_t border = std::max(sums.front(), sums.back());
-    const std::int64_t inside =
-        *std::max_element(sums.begin() + BorderSlope::kNear, sums.end() - BorderSlope::kNear);
+    const std::int64_t inside = *std::max_element(sums.begin() + BorderSlope::kNear, sums.end() - BorderSlope::kNear);
     const double wall =
         static_cast<double>(border) / (static_cast<double>(texels) * static_cast<double>(BorderSlope::kFixed));
     if (wall < BorderSlope::kLeastWall) return 0.0;
