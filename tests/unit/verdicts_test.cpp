@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -222,6 +223,104 @@ TEST(Verdicts, ZBelowZeroIsNamedAsWhatItIs) {
         return k < 2 ? std::array<int, 4>{7, 128, 80, 255} : std::array<int, 4>{248, 128, 80, 255};
     });
     EXPECT_EQ(ids(undercut), Ids{"N202"});
+}
+
+// Steep sides that lie flat on the surface, as JPEG and rounding leave them, are no vectors into the surface.
+TEST(Verdicts, ZThatIsBelowZeroByRoundingIsNotSaid) {
+    const auto sides = [](int z) {
+        return picture(64, 3, [z](int i, int j) {
+            const int k = i % 16;
+            if (j % 32 < 2 || k >= 4) return std::array<int, 4>{128, 128, 255, 255};
+            return std::array<int, 4>{k < 2 ? 1 : 254, 128, z, 255};
+        });
+    };
+    EXPECT_EQ(ids(sides(124)), Ids{});
+    EXPECT_EQ(ids(sides(110)), Ids{"N202"});
+}
+
+// In a map that is nearly flat, z is 1 to a code or two. A filler there bends nothing.
+TEST(Verdicts, AFillerInBlueIsSaidWhereItBendsNormals) {
+    const auto filled = [](double strength) {
+        return picture(64, 3, [strength](int i, int j) {
+            auto c = wave(i, j, strength);
+            c[2] = 255;
+            return c;
+        });
+    };
+    EXPECT_EQ(ids(filled(0.2)), Ids{});
+    EXPECT_EQ(ids(filled(1.0)), Ids{"N209"});
+}
+
+// A converter that normalised black around a chart, and rebuilt z.
+TEST(Verdicts, BlackThatWasNormalisedIsABackground) {
+    for (const int z : {54, 201}) {
+        const Codes codes = picture(64, 3, [z](int i, int j) {
+            const bool is_chart = i > 12 && j > 9 && i < 52;
+            return is_chart ? wave(i, j) : std::array<int, 4>{54, 54, z, 255};
+        });
+        EXPECT_EQ(ids(codes), Ids{"N215"}) << z;
+    }
+}
+
+// Colours that are nearly grey, with heights in alpha: the layout of x in alpha has R, G and B alike, or R and B
+// constant.
+TEST(Verdicts, FaintColorsWithHeightsInAlphaAreNoNormalMap) {
+    const Codes codes = picture(128, 4, [](int i, int j) {
+        const int c = shade(i, j), hue = (i / 8 + j / 8) % 4;
+        return std::array<int, 4>{c + 2 * hue, c, c - hue, 128 + (shade(j + 40, i) - 128) / 2};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N214"});
+}
+
+// Colours of two hues that are centred and do not follow each other, with a blue that is at times small. No texel is
+// level, as some are in every map.
+TEST(Verdicts, ColorsWithoutALevelTexelAreNoNormalMap) {
+    const Codes codes = picture(256, 3, [](int i, int j) {
+        const int c = (shade(i, j) - 128) / 5;
+        if (j < 32) return std::array<int, 4>{200 + c, 128 + c, 10 + c / 4, 255};
+        return std::array<int, 4>{104 + c / 3, 148 + c, 168 + c, 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N214"});
+}
+
+// An environment map: floats without a value below 0.
+TEST(Verdicts, ColorsOfHighRangeAreNoNormalMap) {
+    Texture texture;
+    texture.format = Format::rgb32_float;
+    std::vector<float> values;
+    for (int j = 0; j < 64; ++j) {
+        for (int i = 0; i < 64; ++i) {
+            const auto bright = static_cast<float>(shade(i, j)) / 96.0f;
+            values.insert(values.end(), {1.2f * bright, bright, 0.7f * bright});
+        }
+    }
+    Level level;
+    level.extent = {64, 64};
+    level.bytes.resize(values.size() * sizeof(float));
+    std::memcpy(level.bytes.data(), values.data(), level.bytes.size());
+    texture.levels.push_back(std::move(level));
+    const auto report = check("picture", texture);
+    ASSERT_TRUE(report);
+    EXPECT_EQ(ids_of(*report, Severity::warning), Ids{"N214"});
+}
+
+// Roughness between occlusion and metalness of 1 is no y beside a lost x.
+TEST(Verdicts, RoughnessBetweenOnesIsNoNormalMap) {
+    const Codes codes = picture(128, 3, [](int i, int j) {
+        return std::array<int, 4>{255, 152 + (shade(i, j) - 128) / 3, 255, 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N216"});
+}
+
+// One colour beside white, as of a logo. The edges between them look like slopes.
+TEST(Verdicts, ALogoInTwoColorsIsNoNormalMap) {
+    const Codes codes = picture(256, 3, [](int i, int j) {
+        const double x = i - 128.0, y = j - 128.0, radius = std::sqrt(x * x + 0.5 * y * y + 0.3 * x * y);
+        const double white = std::clamp(60.0 - radius, 0.0, 1.0);
+        const auto mix = [white](double c) { return static_cast<int>(c + white * (255.0 - c) + 0.5); };
+        return std::array<int, 4>{mix(101), mix(79), mix(240), 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N214"});
 }
 
 TEST(Verdicts, XThatIsLostIsAnError) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "checks/findings.h"
 #include "checks/texel_counts.h"
@@ -33,34 +35,35 @@ struct StoredVector {
 class StoredVectors {
 public:
     explicit StoredVectors(const Stored& stored)
-        : stored_(stored), x_(stored.channel(Component::x)), y_(stored.channel(Component::y)),
-          z_(stored.channel(Component::z)) {}
+        : is_signed_(stored.is_signed), x_(plane_of(stored, Component::x)), y_(plane_of(stored, Component::y)),
+          z_(plane_of(stored, Component::z)) {}
 
     [[nodiscard]] StoredVector at(int i, int j) const {
-        return {stored_.component(x_, i, j), stored_.component(y_, i, j), z_ < 0 ? 0.0f : stored_.component(z_, i, j)};
+        return {component(x_, i, j), component(y_, i, j), z_ == nullptr ? 0.0f : component(z_, i, j)};
     }
-    [[nodiscard]] bool has_z() const { return z_ >= 0; }
+    [[nodiscard]] bool has_z() const { return z_ != nullptr; }
     // Whether no filter and no codec makes this of normals. False for NaN.
     [[nodiscard]] bool is_no_normal(const StoredVector& v) const {
         const float square = v.square();
-        if (is_bleached(v) || (z_ >= 0 && Background::is_turned_over(v.x, v.y, v.z))) return true;
-        if (z_ < 0) return square > kOutside * kOutside;
+        if (is_bleached(v) || (has_z() && Background::is_turned_over(v.x, v.y, v.z))) return true;
+        if (!has_z()) return square > kOutside * kOutside;
         return square < kShortest * kShortest || (square > kLongest * kLongest && !is_long_normal(v));
     }
     // Whether this may be a mixture of normals and background.
     [[nodiscard]] bool is_off(const StoredVector& v) const {
         const float square = v.square();
-        if (z_ < 0) return square > 1.0f;
+        if (!has_z()) return square > 1.0f;
         const float most = 1.0f + kTwoCodes, least = 1.0f - kTwoCodes;
         return v.z < 0.0f || square > most * most || square < least * least;
     }
 
 private:
-    // Whether this is black or white, normalised by some program on the way.
+    // Whether this is black or white, normalised by some program on the way. One that rebuilds z from x and y turns
+    // black's z outwards.
     [[nodiscard]] bool is_bleached(const StoredVector& v) const {
         constexpr float kThird = 0.57735f, kCode = 1.5f / 127.5f;
-        const auto is = [&](float c) { return std::abs(std::abs(c) - kThird) < kCode && c * v.x > 0.0f; };
-        return is(v.x) && is(v.y) && (z_ < 0 || is(v.z));
+        const auto is = [&](float c) { return std::abs(std::abs(c) - kThird) < kCode; };
+        return is(v.x) && is(v.y) && v.x * v.y > 0.0f && (!has_z() || (is(v.z) && (v.z > 0.0f || v.x < 0.0f)));
     }
 
     // Whether this is what tools make of steep bevels that they do not normalise: it leans, and points outwards.
@@ -70,28 +73,82 @@ private:
         return v.square() < kMost * kMost && v.z > kOutwards && most - least > kGrey;
     }
 
-    const Stored& stored_;
-    const int x_, y_, z_;
+    static const Plane<float>* plane_of(const Stored& stored, Component component) {
+        const int channel = stored.channel(component);
+        return channel < 0 ? nullptr : &stored.image->planes[static_cast<std::size_t>(channel)];
+    }
+    [[nodiscard]] float component(const Plane<float>* plane, int i, int j) const {
+        const float c = plane->at(i, j);
+        return is_signed_ ? c : 2.0f * c - 1.0f;
+    }
+
+    const bool is_signed_;
+    const Plane<float>*const x_, *const y_, *const z_;
 };
 
 std::size_t bin_of(float c) {
     return static_cast<std::size_t>(std::clamp(c * kBinsPerUnit + kBinsPerUnit + 0.5f, 0.0f, kGridBins - 1.0f));
 }
 
+using GridBin = std::uint32_t;
+
+GridBin grid_bin(const StoredVector& v) {
+    return static_cast<GridBin>((bin_of(v.x) * kGridBins + bin_of(v.y)) * kGridBins + bin_of(v.z));
+}
+
+// Finds the bin that occurs most often; of several, the first of the grid.
+class BinCounts {
+public:
+    struct Most {
+        GridBin bin = 0;
+        std::size_t texels = 0;
+    };
+
+    void add(GridBin bin) {
+        if (!counts_.empty()) {
+            ++counts_[bin];
+            return;
+        }
+        few_.push_back(bin);
+        if (few_.size() < kFew) return;
+        counts_.resize(std::size_t{kGridBins} * kGridBins * kGridBins);
+        for (const GridBin each : few_) ++counts_[each];
+    }
+    Most most() {
+        if (!counts_.empty()) {
+            const auto found = std::max_element(counts_.begin(), counts_.end());
+            return {static_cast<GridBin>(found - counts_.begin()), *found};
+        }
+        std::sort(few_.begin(), few_.end());
+        Most most;
+        for (std::size_t k = 0, next = 0; k < few_.size(); k = next) {
+            while (next < few_.size() && few_[next] == few_[k]) ++next;
+            if (next - k > most.texels) most = {few_[k], next - k};
+        }
+        return most;
+    }
+
+private:
+    static constexpr std::size_t kFew = 1 << 14;  // below, clearing and searching a table takes longer
+
+    std::vector<GridBin> few_;
+    std::vector<std::uint32_t> counts_;
+};
+
 // The most frequent value among the vectors that are no normals.
 std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Extent extent,
                                                   const std::optional<Background>& transparent) {
-    std::vector<std::uint32_t> counts(std::size_t{kGridBins} * kGridBins * kGridBins);
+    BinCounts bins;
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
-            if (transparent && transparent->holds(i, j)) continue;
             const StoredVector v = map.at(i, j);
-            if (map.is_no_normal(v)) ++counts[(bin_of(v.x) * kGridBins + bin_of(v.y)) * kGridBins + bin_of(v.z)];
+            if (!map.is_no_normal(v) || (transparent && transparent->holds(i, j))) continue;
+            bins.add(grid_bin(v));
         }
     }
-    const auto most = std::max_element(counts.begin(), counts.end());
-    if (*most < kLeastBackground * static_cast<double>(extent.texels())) return {};
-    const auto bin = static_cast<std::size_t>(most - counts.begin());
+    const BinCounts::Most most = bins.most();
+    if (static_cast<double>(most.texels) < kLeastBackground * static_cast<double>(extent.texels())) return {};
+    const std::size_t bin = most.bin;
     const auto value = [](std::size_t k) { return static_cast<float>(k) / kBinsPerUnit - 1.0f; };
     return std::array{value(bin / (std::size_t{kGridBins} * kGridBins)), value(bin / kGridBins % kGridBins),
                       value(bin % kGridBins)};
@@ -262,6 +319,11 @@ std::string background_name(const Background& background, const Stored& stored) 
             all = all && std::abs(background.value[static_cast<std::size_t>(k)] - shade.value) < kNear;
         if (all) return shade.name;
     }
+    const auto is_third = [&](std::size_t k, float sign) {
+        return std::abs(background.value[k] - sign * kThird) < kNear;
+    };
+    if (!stored.is_signed && components == 3 && is_third(0, -1.0f) && is_third(1, -1.0f) && is_third(2, 1.0f))
+        return "black, normalised";
     std::string text = "(";
     for (int k = 0; k < components; ++k)
         text += (k > 0 ? ", " : "") + decimal(static_cast<double>(background.value[static_cast<std::size_t>(k)]), 2);

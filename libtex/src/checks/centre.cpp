@@ -24,10 +24,11 @@ double median_of(const Stored& stored, const Background* background, Component c
     std::int64_t count = 0;
     for (const Rect& window : sample_windows(stored.extent())) {
         for (int j = window.y; j < window.y + window.height; ++j) {
+            const float *const row = plane.row(j), *const of_x = x.row(j), *const of_y = y.row(j);
             for (int i = window.x; i < window.x + window.width; ++i) {
-                const float value = plane.at(i, j);
+                const float value = row[i];
                 if (background != nullptr && background->holds(i, j)) continue;
-                if (!(std::max(x.at(i, j), y.at(i, j)) > kBlack) || !(value >= 0.0f && value <= 1.0f)) continue;
+                if (!(std::max(of_x[i], of_y[i]) > kBlack) || !(value >= 0.0f && value <= 1.0f)) continue;
                 ++bins[static_cast<std::size_t>(value * static_cast<float>(kValueBins - 1))];
                 ++count;
             }

@@ -7,9 +7,11 @@
 #include <limits>
 #include <utility>
 
+#include <tex/format.h>
 #include <tex/pack.h>
 
 #include "checks/curl.h"
+#include "rows/swizzle_evidence.h"
 #include "rows/unpack_rows.h"
 
 namespace tex::inline v1 {
@@ -73,12 +75,30 @@ std::optional<Swizzle> ChannelOrder::shown() {
     return is_exchanged ? std::optional(kSwizzleYx) : std::nullopt;
 }
 
+std::optional<Swizzle> shown_order(const Image& base) {
+    ChannelOrder order(base.extent());
+    for (int j = 0; j < base.extent().height; ++j) order.add_row(j, base.planes[0].row(j), base.planes[1].row(j));
+    return order.shown();
+}
+
 Result<std::optional<Swizzle>> shown_order(const Texture& texture, const Execution& execution) {
     const Result<Image> image = decode(texture, 0, execution);
     if (!image) return image.error();
-    ChannelOrder order(image->extent());
-    for (int j = 0; j < image->extent().height; ++j) order.add_row(j, image->planes[0].row(j), image->planes[1].row(j));
-    return order.shown();
+    return shown_order(*image);
+}
+
+bool needs_texels_for_layout(const Texture& texture) {
+    return texture.order_open || (!texture.swizzle_known && format_info(texture.format).channels == 4);
+}
+
+Swizzle layout_shown(const Texture& texture, const Image& base) {
+    if (texture.order_open) return shown_order(base).value_or(texture.swizzle);
+    SwizzleEvidence evidence(base.extent(), texture);
+    for (int j = 0; j < base.extent().height; ++j) {
+        const auto row = [&](std::size_t c) { return base.planes[c].row(j); };
+        evidence.add_row(j, {row(0), row(1), row(2), row(3)});
+    }
+    return evidence.layout();
 }
 
 }  // namespace tex::inline v1

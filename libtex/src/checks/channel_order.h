@@ -32,5 +32,10 @@ private:
 
 // The order that the base level of a BC5 texture shows. Errors: as decode().
 Result<std::optional<Swizzle>> shown_order(const Texture& texture, const Execution& execution);
+std::optional<Swizzle> shown_order(const Image& base);
+
+// Whether the layout is to be told from texels, and, if so, what guess_swizzle() finds. `base`: the decoded base level.
+bool needs_texels_for_layout(const Texture& texture);
+Swizzle layout_shown(const Texture& texture, const Image& base);
 
 }  // namespace tex::inline v1

@@ -12,6 +12,7 @@
 #include <tex/pack.h>
 #include <tex/types.h>
 
+#include "checks/channel_order.h"
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
 #include "rows/extra_rows.h"
@@ -56,10 +57,27 @@ Result<void> count_seen(CheckContext& context) {
     return is_found ? count() : Result<void>();
 }
 
+// Floats that are taken for components without (n + 1) / 2: colours of high range have no x or y below 0, and no map
+// whose normals all lean into one quadrant holds few unit vectors.
+bool are_bright_colors(const CheckContext& context) {
+    constexpr double kMostOff = 0.9;
+    const Stored& stored = context.stored;
+    const TexelCounts& counts = context.counts;
+    const auto is_positive = [&](Component component) {
+        return counts.low[static_cast<std::size_t>(stored.channel(component))] >= 0.0f;
+    };
+    return stored.has_z() && format_info(context.texture.format).sample == SampleKind::floating &&
+           is_positive(Component::x) && is_positive(Component::y) && counts.share(Property::off_length) > kMostOff;
+}
+
 // Decides whether there are normals at all, and which channels hold them.
 Result<void> decide_kind(CheckContext& context) {
     Stored& stored = context.stored;
-    if (context.options.any_length || stored.is_signed || context.constant) return {};
+    if (context.options.any_length || context.constant) return {};
+    if (stored.is_signed) {
+        if (!context.options.swizzle && are_bright_colors(context)) context.kind = Kind::no_map;
+        return {};
+    }
     const auto with = [&](const Background* without) -> Result<Kind> {
         context.kind_measure = measure_kind(stored, without);
         Kind kind = kind_of(context.kind_measure, stored, false);
@@ -68,6 +86,7 @@ Result<void> decide_kind(CheckContext& context) {
         const Extent extent = stored.extent();
         const bool is_small = std::min(extent.width, extent.height) < kLeastSampledSide;
         if (of_surface == Kind::no_map || (is_small && !stored.has_z())) return of_surface;
+        if (context.kind_measure.is_flat()) return kind;  // one colour: edges between two colours have no slopes
         Stored flat = stored;
         for (Component& held : flat.swizzle) held = held == Component::z ? Component::other : held;
         const auto curl = measure_curl(flat, context.execution);
@@ -116,14 +135,15 @@ Result<void> measure(CheckContext& context) {
     auto image = decode_planes(context.texture, context.texture.levels.front(), needs, context.execution);
     if (!image) return image.error();
     context.base = std::move(*image);
-    const Result<Swizzle> swizzle = context.options.swizzle ? Result<Swizzle>(*context.options.swizzle)
-                                                            : guess_swizzle(context.texture, context.execution);
-    if (!swizzle) return swizzle.error();
+    Swizzle swizzle = context.texture.swizzle;
     if (context.options.swizzle) {
-        if (auto held = sources_of(*swizzle, (1u << context.base.planes.size()) - 1); !held) return held.error();
+        swizzle = *context.options.swizzle;
+        if (auto held = sources_of(swizzle, (1u << context.base.planes.size()) - 1); !held) return held.error();
+    } else if (needs_texels_for_layout(context.texture)) {
+        swizzle = layout_shown(context.texture, context.base);
     }
-    context.stored = {&context.base, *swizzle,
-                      stores_signed(context.base, *swizzle, range_of(context.texture.normal_encoding, {})),
+    context.stored = {&context.base, swizzle,
+                      stores_signed(context.base, swizzle, range_of(context.texture.normal_encoding, {})),
                       format_info(context.texture.format).has_blocks()};
     const Stored& stored = context.stored;
     context.has_vectors = stored.channel(Component::x) >= 0 && stored.channel(Component::y) >= 0;

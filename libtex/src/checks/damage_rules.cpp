@@ -21,6 +21,7 @@
 #include "checks/seam.h"
 #include "checks/thresholds.h"
 #include "checks/tone.h"
+#include "checks/wall.h"
 #include "rows/border_slope.h"
 #include "rows/codecs.h"
 #include "threads/parallel.h"
@@ -70,7 +71,7 @@ Result<void> measure_traces(const CheckContext& context, bool wants_seam, Traces
     if (!stored.is_signed)
         measures.emplace_back(
             [&] { traces.centre = measure_centre(stored, context.background ? &*context.background : nullptr); });
-    if (wants_seam) measures.emplace_back([&] { traces.seam = measure_seam(stored); });
+    if (wants_seam) measures.emplace_back([&] { traces.seam = find_seam(stored, thresholds::kSeamRatio); });
     const Execution silent = context.execution.quiet();
     return parallel_for(silent, static_cast<int>(measures.size()), 1,
                         [&](int k, int) { measures[static_cast<std::size_t>(k)](); });
@@ -264,23 +265,7 @@ void check_seam(const CheckContext& context, const Seam& seam, Findings& finding
 // Heights that do not repeat, baked as if they did, leave no step between opposite borders, but a wall along them.
 void check_wall(const CheckContext& context, Findings& findings) {
     if (!findings.wants("N307") || findings.find("N307") != nullptr) return;
-    const Stored& stored = context.stored;
-    const Extent extent = stored.extent();
-    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
-    BorderSlope border(extent);
-    const auto width = static_cast<std::size_t>(extent.width);
-    std::vector<float> row(3 * width);
-    float *const xs = row.data(), *const ys = xs + width, *const zs = ys + width;
-    for (int j = 0; j < extent.height; ++j) {
-        for (int i = 0; i < extent.width; ++i) {
-            xs[i] = stored.component(x, i, j);
-            ys[i] = stored.component(y, i, j);
-            zs[i] = z < 0 ? reconstruct_z(xs[i], ys[i]) : stored.component(z, i, j);
-            if (!std::isfinite(xs[i] + ys[i] + zs[i])) xs[i] = ys[i] = 0.0f, zs[i] = 1.0f;
-        }
-        border.add(j, {xs, ys, zs});
-    }
-    const double ratio = border.ratio();
+    const double ratio = find_wall(context.stored);
     if (ratio <= BorderSlope::kWall) return;
     Finding& finding = findings.add("N307", "a wall runs along the border, " + decimal(ratio, 1) +
                                                 " times as steep as any column or row inside: heights that do not "

@@ -87,15 +87,25 @@ constexpr double kBlocksForShare = 64.0;  // fewer blocks give no reliable share
 enum class Palette { unclear, fits, differs };
 
 // The distinct colours of a block. One colour more than kMostColors stands for all further ones.
-std::vector<Color> colors_of(const Image& image, std::size_t channels, int x, int y) {
-    std::vector<Color> seen;
+struct BlockColors {
+    std::array<Color, kMostColors + 1> color;
+    std::size_t count = 0;
+
+    [[nodiscard]] const Color* begin() const { return color.data(); }
+    [[nodiscard]] const Color* end() const { return color.data() + count; }
+};
+
+BlockColors colors_of(const Image& image, std::size_t channels, int x, int y) {
+    BlockColors seen;
     for (int j = 0; j < kBlockEdge; ++j) {
+        const float* rows[3] = {};
+        for (std::size_t c = 0; c < channels; ++c) rows[c] = image.planes[c].row(y + j) + x;
         for (int i = 0; i < kBlockEdge; ++i) {
             Color color{};
-            for (std::size_t c = 0; c < channels; ++c) color[c] = image.planes[c].at(x + i, y + j);
+            for (std::size_t c = 0; c < channels; ++c) color[c] = rows[c][i];
             if (std::find(seen.begin(), seen.end(), color) != seen.end()) continue;
-            seen.push_back(color);
-            if (seen.size() > kMostColors) return seen;
+            seen.color[seen.count++] = color;
+            if (seen.count > kMostColors) return seen;
         }
     }
     return seen;
@@ -121,17 +131,18 @@ float contrast(const Color& a, const Color& b) {
 // Whether the texels of a block form a palette: two colours and one or two evenly spaced between them. One or two
 // colours alone fit any palette.
 Palette palette_of(const Image& image, std::size_t channels, int x, int y) {
-    std::vector<Color> colors = colors_of(image, channels, x, y);
-    if (colors.size() > kMostColors) return Palette::differs;
-    if (colors.size() < 3) return Palette::unclear;
+    const BlockColors found = colors_of(image, channels, x, y);
+    if (found.count > kMostColors) return Palette::differs;
+    if (found.count < 3) return Palette::unclear;
+    const auto& colors = found.color;
     std::size_t first = 0, last = 1;
-    for (std::size_t a = 0; a < colors.size(); ++a) {
-        for (std::size_t b = a + 1; b < colors.size(); ++b) {
+    for (std::size_t a = 0; a < found.count; ++a) {
+        for (std::size_t b = a + 1; b < found.count; ++b) {
             if (contrast(colors[a], colors[b]) > contrast(colors[first], colors[last])) first = a, last = b;
         }
     }
     if (contrast(colors[first], colors[last]) < kContrast) return Palette::unclear;
-    for (std::size_t k = 0; k < colors.size(); ++k) {
+    for (std::size_t k = 0; k < found.count; ++k) {
         if (k != first && k != last && !is_between(colors[k], colors[first], colors[last])) return Palette::differs;
     }
     return Palette::fits;
@@ -201,9 +212,11 @@ double grid_lead(const Stored& stored, int block) { return largest_ratio(stored,
 
 double palette_share(const Stored& stored) {
     if (is_along_one_axis(*stored.image)) return 0.0;
+    const double share = share_at(stored, 0, kBlockEdge, kBlocksForShare);
+    if (share == 0.0) return 0.0;
     // Blocks that straddle those of a codec, and, within a JPEG's blocks of 8x8, blocks across the middle.
     const double across = std::max(share_at(stored, 2, kBlockEdge, 1.0), share_at(stored, 2, 2 * kBlockEdge, 1.0));
-    return share_at(stored, 0, kBlockEdge, kBlocksForShare) - across;
+    return share - across;
 }
 
 }  // namespace tex::inline v1

@@ -39,6 +39,21 @@ constexpr double kStrong = 0.6;
 
 using Histogram = std::vector<double>;
 
+// The bins of a histogram that are not 0, and what they hold. Small maps have few.
+struct UsedBin {
+    std::uint32_t bin = 0;
+    double blocks = 0.0;
+};
+using UsedBins = std::vector<UsedBin>;
+
+UsedBins used_bins(const Histogram& histogram) {
+    UsedBins used;
+    for (std::size_t k = 0; k < histogram.size(); ++k) {
+        if (histogram[k] != 0.0) used.push_back({static_cast<std::uint32_t>(k), histogram[k]});
+    }
+    return used;
+}
+
 // Whether this block differs from all before it. Structures that repeat have few different blocks, and few blocks fit a
 // quantiser by chance.
 class DistinctBlocks {
@@ -115,14 +130,18 @@ const std::vector<double>& wave_of(int step) {
 
 // The mean of cos(2 pi c / step) over the coefficients c of at least half a step: 1 if all are multiples, -1 if there
 // are too few coefficients.
-double strength_at(const Histogram& histogram, int step) {
+double strength_at(const UsedBins& bins, int step) {
     const std::vector<double>& wave = wave_of(step);
+    const auto period = static_cast<std::uint32_t>(wave.size());
     double sum = 0.0, count = 0.0;
-    std::size_t phase = wave.size() / 2;
-    for (std::size_t k = phase; k < histogram.size(); ++k) {
-        sum += histogram[k] * wave[phase];
-        count += histogram[k];
-        if (++phase == wave.size()) phase = 0;
+    std::uint32_t last = 0, phase = 0;
+    for (const auto& [bin, blocks] : bins) {
+        phase += bin - last;
+        last = bin;
+        while (phase >= period) phase -= period;
+        if (bin < period / 2) continue;
+        sum += blocks * wave[phase];
+        count += blocks;
     }
     return count < kLeastCount ? -1.0 : sum / count;
 }
@@ -133,10 +152,11 @@ struct Step {
 };
 
 Step step_of(const Histogram& histogram) {
+    const UsedBins bins = used_bins(histogram);
     std::array<double, kCoarsest + 1> strengths{};
     double most = -1.0;
     for (int step = kFinest; step <= kCoarsest; ++step) {
-        strengths[static_cast<std::size_t>(step)] = strength_at(histogram, step);
+        strengths[static_cast<std::size_t>(step)] = strength_at(bins, step);
         most = std::max(most, strengths[static_cast<std::size_t>(step)]);
     }
     for (int step = kCoarsest; step >= kFinest && most > 0.0; --step) {
@@ -168,10 +188,6 @@ JpegTrace measure_jpeg(const Stored& stored, int offset) {
         }
     }
     if (distinct.count() < kLeastBlocks) return {};
-    // Most coefficients are small, so the last bins are empty.
-    for (Histogram& histogram : histograms) {
-        while (!histogram.empty() && histogram.back() == 0.0) histogram.pop_back();
-    }
     std::vector<double> strengths, scales;
     for (int v = 0; v < kSide; ++v) {
         for (int u = 0; u < kSide; ++u) {

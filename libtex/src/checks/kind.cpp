@@ -78,7 +78,8 @@ public:
         const auto [least, most] = std::minmax({colors[0], colors[1], colors[2]});
         grey_ += most - least <= kKindGreyCodes ? 1 : 0;
     }
-    void add(const TexelCodes& codes, bool has_z, bool has_alpha) {
+    // Without `all`, only the reading as stored is counted.
+    void add(const TexelCodes& codes, bool has_z, bool has_alpha, bool all) {
         const Curves& curve = curves();
         const auto at = [&codes](const std::array<float, 256>& table, std::size_t c) { return table[codes[c]]; };
         const float x = at(curve.plain, 0), y = at(curve.plain, 1);
@@ -107,11 +108,12 @@ public:
             z_rebuilt_ += static_cast<double>(z * rebuilt);
         }
         count_unit(Reading::as_stored, x, y, z);
+        if (has_alpha) ++alpha_bins_[codes[3]];
+        if (!all) return;
         count_unit(Reading::srgb_encoded, at(curve.encoded, 0), at(curve.encoded, 1), at(curve.encoded, 2));
         count_unit(Reading::srgb_decoded, at(curve.decoded, 0), at(curve.decoded, 1), at(curve.decoded, 2));
         count_unit(Reading::z_from_zero, x, y, 0.5f + 0.5f * z);
         if (!has_alpha) return;
-        ++alpha_bins_[codes[3]];
         count_unit(Reading::y_z_x, at(curve.plain, 3), z, y);
         const float alpha = std::max(kKindLeastAlpha, static_cast<float>(codes[3]) / 255.0f);
         TexelCodes straight{};
@@ -185,8 +187,6 @@ private:
     double xy_ = 0.0, z_rebuilt_ = 0.0;
 };
 
-bool is_flat(const KindMeasure& m) { return std::max(m.deviation_x, m.deviation_y) < thresholds::kNoiseOnly; }
-
 // The correlation of x and y, if both vary by more than noise: 0 in maps that slope along one axis alone.
 double relation_of(const KindMeasure& m) {
     return std::min(m.deviation_x, m.deviation_y) < thresholds::kNoiseOnly ? 0.0 : m.correlation;
@@ -200,15 +200,15 @@ bool are_vectors(const KindMeasure& m) {
     std::array<double, 3> sides{std::abs(v.x), std::abs(v.y), std::abs(v.z)};
     std::sort(sides.begin(), sides.end());
     if (sides[1] <= thresholds::kCentred && (std::abs(m.correlation) <= thresholds::kColorRelated || follows ||
-                                             m.z_deviation < thresholds::kZImplied || is_flat(m)))
+                                             m.z_deviation < thresholds::kZImplied || m.is_flat()))
         return true;
     if (follows && m.z_deviation > 2.0 * thresholds::kZImplied && m.correlation < thresholds::kColorRelated)
         return true;  // leaning
     // Leaning, with other data in blue: colours of one bright hue have R and G that follow each other.
-    if (v.z > thresholds::kUprightMedian && v.off_centre() < thresholds::kSurfaceCentred && !is_flat(m) &&
+    if (v.z > thresholds::kUprightMedian && v.off_centre() < thresholds::kSurfaceCentred && !m.is_flat() &&
         std::abs(relation_of(m)) < thresholds::kTwoRelated && m.beyond < thresholds::kMostOutside)
         return true;
-    return m.spread > thresholds::kAllDirections;  // object space
+    return m.spread > thresholds::kAllDirections && m.correlation < thresholds::kColorRelated;  // object space
 }
 
 bool are_damaged_vectors(const KindMeasure& m) {
@@ -230,6 +230,7 @@ bool are_damaged_vectors(const KindMeasure& m) {
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
+    if (m.level < thresholds::kLeastLevel && !is_surface) return false;
     const bool is_level = m.level > thresholds::kLevelShare || m.as(Reading::as_stored).z > thresholds::kUprightMedian;
     if (std::abs(relation_of(m)) > (is_level ? thresholds::kColorRelated : thresholds::kTwoRelated)) return false;
     const double variance = m.deviation_x * m.deviation_x + m.deviation_y * m.deviation_y;
@@ -247,6 +248,8 @@ bool is_one(const Plane<float>& plane, float value) {
     return true;
 }
 
+bool varies(const Plane<float>& plane) { return !is_one(plane, plane.at(0, 0)); }
+
 bool is_filler(const Plane<float>& plane) {
     const float first = plane.at(0, 0);
     return (first < 0.1f || first > 0.9f) && is_one(plane, first < 0.5f ? 0.0f : 1.0f);
@@ -254,9 +257,13 @@ bool is_filler(const Plane<float>& plane) {
 
 }  // namespace
 
+bool KindMeasure::is_flat() const { return std::max(deviation_x, deviation_y) < thresholds::kNoiseOnly; }
+
 double KindMeasure::Vectors::off_centre() const { return std::max(std::abs(x), std::abs(y)); }
 
-KindMeasure measure_kind(const Stored& stored, const Background* without) {
+namespace {
+
+KindMeasure measure_readings(const Stored& stored, const Background* without, bool all) {
     const Extent extent = stored.extent();
     const auto step = static_cast<int>(std::max(1.0, std::sqrt(static_cast<double>(extent.texels()) / kKindTexels)));
     const auto plane_of = [&](Component component) {
@@ -273,13 +280,22 @@ KindMeasure measure_kind(const Stored& stored, const Background* without) {
             const float a = x->at(i, j), b = y->at(i, j), c = z != nullptr ? z->at(i, j) : 1.0f;
             if (!std::isfinite(a + b + c)) continue;
             const float alpha = has_alpha ? planes[3].at(i, j) : 1.0f;
-            sums.add({code_of(a), code_of(b), code_of(c), code_of(alpha)}, z != nullptr, has_alpha);
+            sums.add({code_of(a), code_of(b), code_of(c), code_of(alpha)}, z != nullptr, has_alpha, all);
             if (planes.size() >= 3)
                 sums.add_grey(
                     {code_of(planes[0].at(i, j)), code_of(planes[1].at(i, j)), code_of(planes[2].at(i, j)), 0});
         }
     }
     return sums.measure();
+}
+
+}  // namespace
+
+KindMeasure measure_kind(const Stored& stored, const Background* without) {
+    constexpr double kSurelyUnit = 0.95;  // no other reading can be better by what rules ask for
+    KindMeasure measure = measure_readings(stored, without, false);
+    if (!stored.has_z() || (measure.as(Reading::as_stored).unit >= kSurelyUnit && are_vectors(measure))) return measure;
+    return measure_readings(stored, without, true);
 }
 
 Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
@@ -291,9 +307,10 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
         if (stored.channel(Component::x) != 3)
             return m.grey <= thresholds::kGreyTexels && are_two_components(m, is_surface) ? Kind::normals
                                                                                           : Kind::no_map;
-        // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures.
-        const bool has_grey =
-            !stored.in_blocks && stored.channel(Component::y) == 1 && m.grey > thresholds::kGreyTexels;
+        // Grey with alpha is a picture; the layout of y in R, G and B is that of compressed textures. Faint colours
+        // beside grey are no layout of two components at all.
+        const bool has_grey = !stored.in_blocks && stored.channel(Component::y) == 1 &&
+                              (m.grey > thresholds::kGreyTexels || (varies(planes[0]) && varies(planes[2])));
         const double most_beyond = stored.in_blocks ? 0.5 : 0.25;  // of blocks, sRGB curves push more texels outside
         if (m.beyond > most_beyond) return Kind::no_map;
         return has_grey && !is_surface ? Kind::no_map : Kind::normals;
@@ -309,7 +326,7 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (is_x_ray) return Kind::x_ray;
     const bool has_alpha = planes.size() > 3 && !is_one(planes[3], 1.0f);
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
-        std::abs(m.as(Reading::as_stored).y) < thresholds::kCentred)
+        std::abs(m.as(Reading::as_stored).y) < thresholds::kLostCentred)
         return Kind::x_lost;
     if (!are_two_components(m, is_surface)) return Kind::no_map;
     // Averaged vectors, and those whose lengths are occlusion, are short; but they keep facing outwards.

@@ -47,7 +47,8 @@ struct KindMeasure {
     double behind = 0.0;                   // share of vectors with z below -0.1
     double null = 0.0;                     // share of vectors with hardly any length
     bool alpha_varies = false;
-    double z_range = 0.0;  // of the stored values of z
+    double z_range = 0.0;                // of the stored values of z
+    [[nodiscard]] bool is_flat() const;  // x and y vary by no more than noise
 };
 
 enum class Kind {

@@ -83,6 +83,11 @@ PictureKind check_no_map(const CheckContext& context, Findings& findings) {
         return PictureKind::grey;
     }
     if (check_surface_data(context, findings)) return PictureKind::data;
+    if (context.stored.is_signed) {
+        add_counted(context, findings, "N214", Property::off_length,
+                    " are off unit length by more than two codes, and neither x nor y is below 0 anywhere");
+        return PictureKind::colors;
+    }
     const double unit = measure.as(Reading::as_stored).unit;
     add_share(findings, "N214", evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored),
               unit);

@@ -29,10 +29,12 @@ constexpr double kLeastOblique = 0.025;
 constexpr float kFlat = 0.015f;  // two codes of 8 bits
 
 void add_slopes(const Plane<float>& slopes, const Plane<float>& across, std::vector<double>& bins) {
-    for (int j = 0; j < slopes.extent().height; ++j) {
-        for (int i = 0; i < slopes.extent().width; ++i) {
-            const float s = slopes.at(i, j);
-            if (!(std::abs(s) < static_cast<float>(kSlopeRange)) || std::abs(across.at(i, j)) > kSteep) continue;
+    const auto [width, height] = slopes.extent();
+    for (int j = 0; j < height; ++j) {
+        const float *const row = slopes.row(j), *const other = across.row(j);
+        for (int i = 0; i < width; ++i) {
+            const float s = row[i];
+            if (!(std::abs(s) < static_cast<float>(kSlopeRange)) || std::abs(other[i]) > kSteep) continue;
             const auto bin = static_cast<int>((s + static_cast<float>(kSlopeRange)) * static_cast<float>(kSlopeBins));
             bins[static_cast<std::size_t>(std::clamp(bin, 0, kSlopeBins - 1))] += 1.0;
         }
@@ -79,6 +81,26 @@ std::vector<double> detail_of(const std::vector<double>& bins) {
             total > 0.0 ? (weighted[static_cast<std::size_t>(k)] - sum / count) / total : 0.0;
     }
     return detail;
+}
+
+// How much of the detail lies at the teeth of a comb. It has a tooth at 0, so only the cosine is used, which is the
+// same on both sides of 0. All angles are multiples of one, whose cosines are computed once: a small map would spend
+// most of its time on them.
+double comb_of(const std::vector<double>& detail, double rate) {
+    constexpr int kAngles = static_cast<int>(2.0 * kSlopeBins / kRateStep);  // of a whole turn
+    static const std::vector<double> cosines = [] {
+        std::vector<double> all(kAngles);
+        for (int k = 0; k < kAngles; ++k) all[static_cast<std::size_t>(k)] = math::cos(2.0 * math::kPi * k / kAngles);
+        return all;
+    }();
+    const int turns = static_cast<int>(rate / kRateStep);
+    double sum = 0.0;
+    for (int k = 0; k < kSlopeBins / 2; ++k) {
+        const int angle = turns * (kSlopeBins - 1 - 2 * k) % kAngles;  // the slope is half a bin off whole bins
+        const double both = detail[static_cast<std::size_t>(k)] + detail[static_cast<std::size_t>(kSlopeBins - 1 - k)];
+        sum += both * cosines[static_cast<std::size_t>(angle)];
+    }
+    return sum;
 }
 
 // The number of teeth at multiples of `step` other than 0 that hold at least 1 % of the total of all these teeth.
@@ -172,14 +194,7 @@ Lattice measure_lattice(const Stored& stored) {
     constexpr int kRates = static_cast<int>((kMostRate - kLeastRate) / kRateStep) + 1;
     for (int r = 0; r < kRates; ++r) {
         const double rate = kLeastRate + r * kRateStep;
-        // A comb has a tooth at 0, so only the cosine is used.
-        double p = 0.0, q = 0.0;
-        for (int k = 0; k < kSlopeBins; ++k) {
-            const double wave = math::cos(2.0 * math::kPi * rate * ((k + 0.5) / kSlopeBins - kSlopeRange));
-            p += detail_p[static_cast<std::size_t>(k)] * wave;
-            q += detail_q[static_cast<std::size_t>(k)] * wave;
-        }
-        const double strength = std::min(p, q);
+        const double strength = std::min(comb_of(detail_p, rate), comb_of(detail_q, rate));
         if (strength > lattice.strength) lattice = {1.0 / rate, strength, 0.0, 0};
     }
     if (lattice.step > 0.0)

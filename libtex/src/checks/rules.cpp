@@ -78,8 +78,8 @@ constexpr Rule kTextureRules[] = {
      "occlusion in the lengths (Terrain3D); --length-in occlusion says so.",
      "pack-normals FILE --normalize --format SAME -o FIXED", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
-     "z is below zero by more than two codes. Encodings that rebuild z cannot hold that, and lighting from the front "
-     "turns black.",
+     "z is below zero by more than two codes, and below -0.1 in three of ten such texels: steep sides that were "
+     "rounded do not count. Encodings that rebuild z cannot hold that, and lighting from the front turns black.",
      "", "N201"},
     {"N203", "beyond-unit", values, warning, true, "x and y lie outside the unit circle.",
      "x^2 + y^2 is above 1 by more than two codes in more than 0.1 % of the texels of an encoding without z, so z "
@@ -105,8 +105,8 @@ constexpr Rule kTextureRules[] = {
      "map tilts the base.",
      "unpack-normals FILE --keep-length --snap-flat --level all --format SAME -o FIXED", ""},
     {"N209", "blue-not-z", values, warning, true, "Blue does not hold z.",
-     "Blue is constant while x and y vary: the file has two components, and its third channel is a filler. Readers "
-     "that do not rebuild z get bent normals.",
+     "Blue is constant while x and y vary so much that z ought to: the file has two components, and its third channel "
+     "is a filler. Readers that do not rebuild z get bent normals.",
      "pack-normals FILE --normalize --swizzle rg --format SAME -o FIXED",
      "N115 N201 N202 N205 N207 N213 N214 N215 N220"},
     {"N210", "grey-picture", values, error, true, "The picture is grey.",
@@ -134,9 +134,10 @@ constexpr Rule kTextureRules[] = {
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     {"N215", "background", values, warning, true, "The background is not filled.",
-     "A colour that is no normal (black, grey, white) fills areas around the charts. Filters and block compression mix "
-     "it into charts, and smaller levels mix in more: dark lines along seams. Other rules leave it out. The fix is "
-     "tried first: no command is printed if it would turn texels beside charts that hold normals of their own.",
+     "A colour that is no normal (black, grey, white; also normalised) fills areas around the charts. Filters and "
+     "block compression mix it into charts, and smaller levels mix in more: dark lines along seams. Other rules leave "
+     "it out. The fix is tried first: no command is printed if it would turn texels beside charts that hold normals of "
+     "their own.",
      "pack-normals FILE --keep-length --fill-background --format SAME -o FIXED", ""},
     {"N216", "occlusion-roughness-metal", values, error, true, "The picture holds occlusion, roughness and metalness.",
      "Blue is 0 or 1 nearly everywhere, red is far from the middle, and no vector is of unit length. So are the "

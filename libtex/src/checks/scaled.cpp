@@ -45,8 +45,9 @@ struct Phases {
 Phases phases_of(const ValueLines& lines, int factor) {
     Phases phases;
     for (const std::vector<float>& line : lines) {
+        std::size_t p = 0;
         for (std::size_t i = 1; i + 1 < line.size(); ++i) {
-            const auto p = i % static_cast<std::size_t>(factor);
+            p = p + 1 == static_cast<std::size_t>(factor) ? 0 : p + 1;
             const float before = line[i - 1], value = line[i], after = line[i + 1];
             phases.step[p] = std::max(phases.step[p], std::abs(after - value));
             phases.bends[p] += std::abs(before - 2.0f * value + after) > kClearBend ? 1.0 : 0.0;
@@ -91,15 +92,21 @@ bool interpolates_pairs(const ValueLines& lines) {
 }  // namespace
 
 Enlargement find_enlargement(const Stored& stored) {
-    const ValueLines rows = lines_of(stored, true), columns = lines_of(stored, false);
+    const ValueLines rows = lines_of(stored, true);
+    ValueLines columns;  // which take longer to collect: only if the rows of some factor agree
+    const auto of_columns = [&]() -> const ValueLines& {
+        if (columns.empty()) columns = lines_of(stored, false);
+        return columns;
+    };
     const Extent extent = stored.extent();
     for (int factor = kScaledMostFactor; factor >= 2; --factor) {
         if (std::min(extent.width, extent.height) < kScaledLeastCells * factor) continue;
         if (extent.width % factor != 0 || extent.height % factor != 0) continue;
-        const Phases across = phases_of(rows, factor), down = phases_of(columns, factor);
-        if (repeats(across, factor) && repeats(down, factor)) return {factor, false};
-        if (factor > 2 && bends_half_way(across, factor) && bends_half_way(down, factor)) return {factor, true};
-        if (factor == 2 && interpolates_pairs(rows) && interpolates_pairs(columns)) return {2, true};
+        const Phases across = phases_of(rows, factor);
+        if (repeats(across, factor) && repeats(phases_of(of_columns(), factor), factor)) return {factor, false};
+        if (factor > 2 && bends_half_way(across, factor) && bends_half_way(phases_of(of_columns(), factor), factor))
+            return {factor, true};
+        if (factor == 2 && interpolates_pairs(rows) && interpolates_pairs(of_columns())) return {2, true};
     }
     return {};
 }

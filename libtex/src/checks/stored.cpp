@@ -90,25 +90,50 @@ bool stores_signed(const Image& image, const Swizzle& swizzle, ValueRange range)
     return !evidence.says_unsigned();
 }
 
+namespace {
+
+// One row of slopes. Returns whether all are usable. The loop has no branches, so that compilers use vectors.
+template <bool kSigned, bool kHasZ>
+bool slope_row(const float* stored_x, const float* stored_y, const float* stored_z, int width, float* p, float* q) {
+    const auto component = [](float c) { return kSigned ? c : 2.0f * c - 1.0f; };
+    int usable_texels = 0;
+    for (int i = 0; i < width; ++i) {
+        const float x = component(stored_x[i]), y = component(stored_y[i]);
+        const float flat = x * x + y * y;
+        const float z = kHasZ ? component(stored_z[i]) : reconstruct_z(x, y);
+        const float square = flat + z * z;
+        // Written so that NaN makes it false. Each & needs no jump.
+        const bool usable = (square >= 0.25f) & (square <= 4.0f) & (z >= kLeastZ) & (kHasZ | (flat <= 1.04f));
+        usable_texels += usable ? 1 : 0;
+        const float across = -x / z, up = -y / z;
+        p[i] = usable ? across : kNan;
+        q[i] = usable ? up : kNan;
+    }
+    return usable_texels == width;
+}
+
+}  // namespace
+
 Slopes slopes_of(const Stored& stored, Rect window) {
     const Extent extent{window.width, window.height};
     Slopes slopes{Plane<float>(extent), Plane<float>(extent)};
-    const int cx = stored.channel(Component::x), cy = stored.channel(Component::y), cz = stored.channel(Component::z);
+    const bool has_z = stored.has_z();
+    const auto row_of = [&](Component component, int j) {
+        const auto channel = static_cast<std::size_t>(stored.channel(component));
+        return stored.image->planes[channel].row(window.y + j) + window.x;
+    };
+    const auto fill = stored.is_signed ? (has_z ? slope_row<true, true> : slope_row<true, false>)
+                                       : (has_z ? slope_row<false, true> : slope_row<false, false>);
     bool unusable = false;
     for (int j = 0; j < window.height; ++j) {
+        float *const p = slopes.p.row(j), *const q = slopes.q.row(j);
+        unusable |= !fill(row_of(Component::x, j), row_of(Component::y, j), has_z ? row_of(Component::z, j) : nullptr,
+                          window.width, p, q);
+        if (stored.transparent == nullptr) continue;
         for (int i = 0; i < window.width; ++i) {
-            const float x = stored.component(cx, window.x + i, window.y + j);
-            const float y = stored.component(cy, window.x + i, window.y + j);
-            const float flat = x * x + y * y;
-            const float z = cz >= 0 ? stored.component(cz, window.x + i, window.y + j) : reconstruct_z(x, y);
-            const float square = flat + z * z;
-            // Written so that NaN makes it false.
-            const bool usable =
-                square >= 0.25f && square <= 4.0f && z >= kLeastZ && (cz >= 0 || flat <= 1.04f) &&
-                (stored.transparent == nullptr || !stored.transparent->is_transparent(window.x + i, window.y + j));
-            unusable |= !usable;
-            slopes.p.at(i, j) = usable ? -x / z : kNan;
-            slopes.q.at(i, j) = usable ? -y / z : kNan;
+            if (!stored.transparent->is_transparent(window.x + i, window.y + j)) continue;
+            p[i] = q[i] = kNan;
+            unusable = true;
         }
     }
     if (unusable) widen_holes(slopes);

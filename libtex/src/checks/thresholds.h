@@ -53,6 +53,7 @@ inline constexpr double kRestoredShare = 0.6;
 inline constexpr double kRestoredSurely = 0.9;  // colour pictures that centre then: at most 0.46
 // Medians of x and y, or of the two components that are not near 1. Leaning maps: up to 0.29.
 inline constexpr double kCentred = 0.35;
+inline constexpr double kLostCentred = 0.1;      // of y alone: roughness between occlusion and metalness of 1 has 0.15
 inline constexpr double kRestoredCentre = 0.15;  // sRGB, read the other way: at most 0.03
 inline constexpr double kUprightMedian = 0.6;    // of z then
 // Correlation of x and y. Colours are bright or dark in all channels: 0.8 to 1 in most. Normal maps whose vectors do
@@ -72,6 +73,7 @@ inline constexpr double kMostOutside = 0.02;
 inline constexpr double kTwoCentred = 0.3;
 inline constexpr double kTwoRelated = 0.5;
 inline constexpr double kLevelShare = 0.25;     // of texels with x and y near 0: few others may follow each other more
+inline constexpr double kLeastLevel = 0.01;     // least such share, unless curl shows a surface; maps: 0.045 and more
 inline constexpr double kTwoVariance = 0.3;     // of x and y, unless curl shows a surface; noise over all codes: 0.67
 inline constexpr double kFewBehind = 0.0005;    // share of vectors with z below -0.1
 inline constexpr double kFewNull = 0.0001;      // of vectors without length, if alpha holds heights

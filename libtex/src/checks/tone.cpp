@@ -146,18 +146,25 @@ int few_levels(const Stored& stored) {
     for (const Component component : {Component::x, Component::y}) {
         const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
         std::array<bool, 256> is_used{};
+        // How many values there are, or 0 if two of them lie near to each other.
+        const auto count_levels = [&is_used] {
+            int levels = 0;
+            for (int code = 0, last = -kLeastDistance; code < 256; ++code) {
+                if (!is_used[static_cast<std::size_t>(code)]) continue;
+                if (code - last < kLeastDistance) return 0;
+                last = code;
+                ++levels;
+            }
+            return levels;
+        };
+        int levels = 0;
         for (int j = 0; j < stored.extent().height; ++j) {
             for (int i = 0; i < stored.extent().width; ++i) {
                 const float code = 255.0f * std::clamp(plane.at(i, j), 0.0f, 1.0f);
                 is_used[static_cast<std::size_t>(code + 0.5f)] = true;
             }
-        }
-        int levels = 0;
-        for (int code = 0, last = -kLeastDistance; code < 256; ++code) {
-            if (!is_used[static_cast<std::size_t>(code)]) continue;
-            if (code - last < kLeastDistance) return 0;
-            last = code;
-            ++levels;
+            levels = count_levels();
+            if (levels == 0) return 0;
         }
         if (levels < kLeastLevels) return 0;
         most = std::max(most, levels);

@@ -9,30 +9,27 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr int kLeastBorderSide = 16;
-constexpr float kFixed = 1024.0f;          // units of a slope of 1
 constexpr float kSteepestCounted = 64.0f;  // steeper ones are no more of a wall
-constexpr double kLeastWall = 0.1;         // slope: 6 degrees
-constexpr int kNear = 3;                   // columns and rows that kernels may mix with the other side of the map
-
-std::int64_t fixed_slope(float component, float z) {
-    const float slope = std::abs(component) / std::max(z, 1.0f / kSteepestCounted);
-    return static_cast<std::int64_t>(std::min(slope, kSteepestCounted) * kFixed);
-}
 
 // The ratio of one direction. `texels`: how many each sum has.
 double ratio_of(const std::vector<std::int64_t>& sums, int texels) {
     const std::int64_t border = std::max(sums.front(), sums.back());
-    const std::int64_t inside = *std::max_element(sums.begin() + kNear, sums.end() - kNear);
-    const double wall = static_cast<double>(border) / (static_cast<double>(texels) * static_cast<double>(kFixed));
-    if (wall < kLeastWall) return 0.0;
+    const std::int64_t inside = *std::max_element(sums.begin() + BorderSlope::kNear, sums.end() - BorderSlope::kNear);
+    const double wall =
+        static_cast<double>(border) / (static_cast<double>(texels) * static_cast<double>(BorderSlope::kFixed));
+    if (wall < BorderSlope::kLeastWall) return 0.0;
     return static_cast<double>(border) / static_cast<double>(std::max<std::int64_t>(1, inside));
 }
 
 }  // namespace
 
+std::int64_t BorderSlope::fixed_slope(float component, float z) {
+    const float slope = std::abs(component) / std::max(z, 1.0f / kSteepestCounted);
+    return static_cast<std::int64_t>(std::min(slope, kSteepestCounted) * kFixed);
+}
+
 BorderSlope::BorderSlope(Extent extent) : extent_(extent) {
-    if (std::min(extent.width, extent.height) < kLeastBorderSide) return;
+    if (std::min(extent.width, extent.height) < kLeastSide) return;
     columns_.resize(static_cast<std::size_t>(extent.width));
     rows_.resize(static_cast<std::size_t>(extent.height));
 }

@@ -17,7 +17,15 @@ namespace tex::inline v1 {
 // Looks at rows of a map, in any order and from any thread. The result depends on neither.
 class BorderSlope {
 public:
-    static constexpr double kWall = 2.0;  // of ratio()
+    static constexpr double kWall = 2.0;       // of ratio()
+    static constexpr double kLeastWall = 0.1;  // mean slope of a border that can be seen: 6 degrees
+    static constexpr int kLeastSide = 16;      // in texels
+    static constexpr int kStep = 4;            // of the rows that columns are measured on, and the other way round
+    static constexpr int kNear = 3;            // columns and rows that kernels may mix with the other side of the map
+    static constexpr float kFixed = 1024.0f;   // units of a slope of 1
+
+    // |component / z| in units of 1 / kFixed.
+    static std::int64_t fixed_slope(float component, float z);
 
     explicit BorderSlope(Extent extent);
 
@@ -29,8 +37,6 @@ public:
     [[nodiscard]] double ratio() const;
 
 private:
-    static constexpr int kStep = 4;  // of the rows that columns are measured on, and the other way round
-
     const Extent extent_;
     std::mutex mutex_;
     std::vector<std::int64_t> columns_, rows_;  // sums of |slope| to the right, and upwards, in fixed point
