@@ -19,6 +19,7 @@
 #include "cli/usage_error.h"
 #include "cli/value.h"
 #include "options/normals.h"
+#include "reports/repair_report.h"
 #include "reports/repairs.h"
 #include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
@@ -59,6 +60,7 @@ private:
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
+    [[nodiscard]] Result<void> process_file(cli::Job& job);
     [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model);
     [[nodiscard]] RepairOptions options_for(std::optional<YAxis> y) const;
     void report(cli::Job& job, const std::string& name, const Repaired& repaired);
@@ -89,6 +91,7 @@ private:
     std::optional<cli::LengthIn> length_in_;
     std::mutex mutex_;
     cli::RepairTotals totals_;
+    cli::RepairReport report_;
 };
 
 RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
@@ -127,6 +130,8 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
         .completes = cli::Completes::files;
     command.choice(options_.mirrored, "--mirrored", "CHANNEL", kMirroredChannelNames,
                    "which channel is the other way round, where slopes show that green or red is");
+    command.choice(options_.turned, "--turned", "WAY", kTurnedPictureNames,
+                   "which way a picture was turned whose vectors were not");
     command.option("--bumpiness", "B", "bake heights that stand in place of normals; white is B texel widths high",
                    [this](const std::string& text) {
                        options_.bumpiness = static_cast<float>(
@@ -139,6 +144,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     layout.preset = "auto";
     layout.completes = cli::Completes::words;
     cli::add_length_in(command, length_in_);
+    report_.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
     command.check([this] {
@@ -147,7 +153,8 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
             throw cli::UsageError(fmt::format("--dry-run and {} exclude each other", option));
     });
     command.example("repair-normals 'art/**/*_n.png' --out-dir mended", "Undoes what the texels prove.");
-    command.example("repair-normals 'art/**/*_n.png' --dry-run", "What would be done, and by which angle.");
+    command.example("repair-normals 'art/**/*_n.png' --dry-run --report plan.html",
+                    "What would be done, and by which angle.");
     command.example("repair-normals scene.glb -o mended.glb", "The maps of a model, and nothing else of it.");
     command.example("repair-normals rock_n.dds -o rock_n.dds --y up --mirrored green",
                     "Turns green over where it points down, in place.");
@@ -163,6 +170,7 @@ Result<void> RepairNormals::check(const std::vector<cli::Task>& tasks) {
         // Which files are beside a model depends on which of its maps change.
         if (writes_models) throw cli::UsageError(fmt::format("{} is not for models that are written", option));
     }
+    report_.check(tasks, {{"--height", height_file_}, {"--depfile", files.depfile}});
     if (height_file_.empty()) return {};
     if (tasks.size() != 1 || has_models) throw cli::UsageError("--height goes with a single file, which is no model");
     const auto image = read_image(height_file_, running.read);
@@ -186,12 +194,8 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
     for (const FaultLeft& fault : repaired.left) {
         const Finding& left = fault.finding;
         if (left.severity != Severity::error) continue;
-        const std::string_view how = fault.certainty == RepairClass::likely   ? " (likely = true repairs it)"
-                                     : fault.certainty != RepairClass::choice ? ""
-                                     : left.rule->id == "N210"                ? " (bumpiness = B bakes them)"
-                                                               : " (mirrored = \"green\" or \"red\" repairs it)";
         job.raise(cli::ExitCode::findings,
-                  fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message, how));
+                  fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message, cli::manifest_words(fault)));
         break;
     }
     for (const RepairStep& step : repaired.steps) {
@@ -207,6 +211,12 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
 }
 
 Result<void> RepairNormals::process(cli::Job& job) {
+    auto done = process_file(job);
+    if (!done && report_.is_given()) report_.add_failure(job, done.error());
+    return done;
+}
+
+Result<void> RepairNormals::process_file(cli::Job& job) {
     if (job.task.model_output) return process_model(job, *job.task.model_output);
     if (dry_run_ && is_model(job.task.input)) {
         const auto model = cli::maps_to_write(job.task.input, material_, {job.read_options});
@@ -231,6 +241,10 @@ Result<void> RepairNormals::process(cli::Job& job) {
     if (!repaired) return repaired.error();
     job.report.update(cli::repairs_json(*repaired));
     report(job, job.task.name(), *repaired);
+    if (report_.is_given()) {
+        const auto y = job.task.model ? output.y.value_or(YAxis::up) : output.y;
+        if (auto added = report_.add(job, job.task.name(), *texture, *repaired, y); !added) return added;
+    }
     if (dry_run_) return {};
     if (repaired->has_errors()) {
         if (writes_to_output()) job.warn("an error is left, and nothing is written; --dry-run shows it");
@@ -279,6 +293,10 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         auto repaired = repair_in_model(job, maps, *texture, execution);
         if (!repaired) return repaired.error();
         report(job, maps.front()->name(), *repaired);
+        if (report_.is_given()) {
+            const YAxis y = output.y.value_or(YAxis::up);
+            if (auto added = report_.add(job, maps.front()->name(), *texture, *repaired, y); !added) return added;
+        }
         is_refused = is_refused || repaired->has_errors();
         for (const MapOfModel& map : maps) {
             cli::Json line = cli::repairs_json(*repaired);
@@ -368,8 +386,10 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes by
 }
 
 cli::ExitCode RepairNormals::finish(cli::Console& console) {
-    if (is_step_ || running.json || writes_to_output() || totals_.maps == 0) return cli::ExitCode::done;
-    return console.print(totals_.text(dry_run_) + "\n");
+    const std::string summary = totals_.text(dry_run_);
+    const cli::ExitCode code = report_.write(console, summary);
+    if (is_step_ || running.json || writes_to_output() || totals_.maps == 0) return code;
+    return std::max(code, console.print(summary + "\n"));
 }
 
 const cli::Registered<RepairNormals> kRegistered(

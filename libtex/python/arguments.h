@@ -76,6 +76,7 @@ TEX_PYTHON_WORDS(HeightChannel);
 TEX_PYTHON_WORDS(LightKind);
 TEX_PYTHON_WORDS(Metric);
 TEX_PYTHON_WORDS(MirroredChannel);
+TEX_PYTHON_WORDS(TurnedPicture);
 TEX_PYTHON_WORDS(MipDomain);
 TEX_PYTHON_WORDS(MipFilter);
 TEX_PYTHON_WORDS(ExtraKind);

@@ -18,6 +18,7 @@ struct Repairing {
     bool likely = false;
     py::object only = py::none(), skip = py::none();
     std::optional<MirroredChannel> mirrored;
+    std::optional<TurnedPicture> turned;
     std::optional<float> bumpiness;
     Effort effort = RepairOptions{}.effort;
     MipOptions mip;
@@ -29,6 +30,7 @@ void each_field(Repairing& o, F& f) {
     f("only", o.only, "Sequence[str] | None");
     f("skip", o.skip, "Sequence[str] | None");
     f("mirrored", o.mirrored);
+    f("turned", o.turned);
     f("bumpiness", o.bumpiness);
     f("effort", o.effort);
     f("mip", o.mip);
@@ -83,6 +85,7 @@ void add_repairs(Module& module) {
             options.only = rules_from(how.only, "only");
             options.skip = rules_from(how.skip, "skip");
             options.mirrored = how.mirrored;
+            options.turned = how.turned;
             options.bumpiness = how.bumpiness;
             options.effort = how.effort;
             options.mip = how.mip;

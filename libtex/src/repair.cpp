@@ -3,6 +3,7 @@
 #include <tex/repair.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -45,11 +46,17 @@ bool takes_part(const RepairOptions& options, const Rule& rule) {
 
 // Whether the finding is gone, and not merely left out because another one explains it. What a picture seems to be
 // changes with every step.
-bool is_gone(const CheckReport& report, std::string_view id) {
-    if (id == "N214") return find_finding(report, id) == nullptr;
+bool is_gone(const CheckReport& report, const RepairStep& step) {
+    const std::string_view id = step.rule->id;
+    if (id == "N214" || id == "N213") return find_finding(report, id) == nullptr;
+    // Channels go back first where levels were changed, too, and where x and y were exchanged beside z.
+    constexpr std::string_view kTones[] = {"N301", "N302", "N313", "N314"};
+    const bool is_of_z = id == "N308" && step.certainty == RepairClass::safe && step.kind == RepairKind::exchange;
     return std::none_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-        return finding.rule->id == id ||
-               (finding.severity == Severity::error && finding.rule->explains.find(id) != std::string_view::npos);
+        if (finding.rule->id == id) return !is_of_z || finding.unit == "component";
+        if (is_of_z && std::find(std::begin(kTones), std::end(kTones), finding.rule->id) != std::end(kTones))
+            return false;
+        return finding.severity == Severity::error && finding.rule->explains.find(id) != std::string_view::npos;
     });
 }
 
@@ -131,7 +138,8 @@ private:
     // Two damages can hide each other, so that the picture seems to be no normal map at all. Undoes one that may have
     // happened, and then what the rules find. Stays with the first guess that leaves no error.
     Result<void> guess_first_step(Repaired& done) {
-        const Finding* const found = find_finding(report_, "N214");
+        const Finding* const colors = find_finding(report_, "N214");
+        const Finding* const found = colors != nullptr ? colors : find_finding(report_, "N213");
         if (found == nullptr || !options_.likely || !takes_part(options_, *found->rule)) return {};
         if (!levels_) {
             auto decoded = decode_current();
@@ -161,7 +169,7 @@ private:
                                                 [](const Finding& f) { return f.severity == Severity::error; });
             // The rules must have found the other one.
             const auto proofs = std::count_if(done.steps.begin(), done.steps.end(), [](const RepairStep& s) {
-                return s.rule->id != "N214" && proves(s.kind);
+                return s.rule->id != "N214" && s.rule->id != "N213" && proves(s.kind);
             });
             const bool is_right = !has_errors && proofs > 0;
             if (is_right) return {};
@@ -198,7 +206,8 @@ private:
                 take(step, **state, done);
                 return true;
             }
-            if (!steps->empty() && is_allowed(steps->front())) return set_aside(*found.rule);
+            const bool is_last = k + 1 == rows.size() || rows[k + 1].rule != rows[k].rule;
+            if (is_last && !steps->empty() && is_allowed(steps->front())) return set_aside(*found.rule);
         }
         return false;
     }
@@ -218,7 +227,7 @@ private:
 
     [[nodiscard]] KnownOfMap known() const {
         return {options_.checks.require.y.has_value() || current().y_known, options_.mirrored,
-                options_.bumpiness.has_value()};
+                options_.bumpiness.has_value(), options_.turned, options_.checks.height != nullptr};
     }
 
     Result<std::vector<RepairStep>> steps_of(const RuleRepair& row, const Finding& finding) {
@@ -270,7 +279,7 @@ private:
         }
         auto report = check(file_, state.texture, checks_, execution_);
         if (!report) return report.error();
-        if (!is_gone(*report, step.rule->id) || contradicts(step, *report)) return std::optional<State>();
+        if (!is_gone(*report, step) || contradicts(step, *report)) return std::optional<State>();
         const auto degrees = mean_change(current(), state.texture, execution_);
         if (!degrees) return degrees.error();
         step.degrees = *degrees;
@@ -323,13 +332,18 @@ private:
     }
 
     // Whether the map shows that the step was not the right one. x and y that were exchanged show the direction of
-    // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. Numbers read
-    // with the right sign do not lean.
+    // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. After the right
+    // turn, slopes follow the heights. Numbers read with the right sign do not lean.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
         if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
-        if (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely) return false;
+        const bool is_by_heights = step.rule->id == "N601";
+        const bool turns = step.kind == RepairKind::turn_left || step.kind == RepairKind::turn_right;
+        if (turns && options_.turned && !is_by_heights) return false;
+        if (!turns && !is_by_heights && (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely)) return false;
         const std::optional<YAxis> wanted =
             options_.checks.require.y ? options_.checks.require.y : std::optional(current().y_axis);
+        if (turns || is_by_heights)
+            return !report.pair || !report.pair->decides() || report.pair->strength < 0.0 || report.pair->y != wanted;
         return report.y.y != wanted;
     }
 

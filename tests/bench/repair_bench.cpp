@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // repair_bench: which damages repair() undoes in 40 clean maps of ../shared/data/wild4, and how exactly.
 //
-//     repair_bench [MAPS]        the number of maps (40)
-//     repair_bench --pairs [MAPS]    two damages at once
-//     repair_bench --all         what repairs do to all of wild4, undamaged
+//     repair_bench [MAPS [FIRST]]    the number of maps (40) and of storages (all 5)
+//     repair_bench --pairs [MAPS]    two damages at once, in 8 bits
+//     repair_bench --all             what repairs do to all of wild4, undamaged
 //
-// Each damage is planted into the middle of a map in double, and the result is stored with 8 and 16 bits, as DXT5nm and
-// as BC5. A damage is visible if it turns the normals by a degree or more in the mean. It is undone if the mean angle
-// to the undamaged map is at most twice that of a reference, which undoes the same damage in double and stores the
-// result once, or 0.2 degrees, which is half a code of 8 bits. Every second map is held out: thresholds may be set on
-// the others alone. The direction of green that the undamaged map shows is required; maps that show none are left out
-// where a damage is about it.
+// Each damage is planted into the middle of a map in double, and the result is stored with 8 and 16 bits, as a JPEG of
+// quality 75, as DXT5nm and as BC5. A damage is visible if it turns the normals by a degree or more in the mean. It is
+// undone if the mean angle to the undamaged map is at most twice that of a reference, which undoes the same damage in
+// double and stores the result once, or 0.2 degrees, which is half a code of 8 bits. Half of the maps, by a hash of
+// their names, are held out: thresholds may be set on the others alone. The direction of green that the undamaged map
+// shows is required; maps that show none are left out where a damage is about it.
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -28,6 +29,7 @@
 
 #include <tex/tex.h>
 
+#include "bench/repair_damages.h"
 #include "bench/wild_maps.h"
 #include "reference/damage.h"
 
@@ -37,153 +39,6 @@ using namespace tex;
 using namespace tex::reference;
 
 constexpr double kVisible = 1.0, kFactor = 2.0, kExact = 0.2;  // degrees
-
-// A picture of stored values, 0 to 1: R, G, B (and A).
-struct Values {
-    Extent extent;
-    int channels = 3;
-    std::vector<double> of;
-};
-
-double curve(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055; }
-double curve_back(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
-
-using Change = std::function<void(double* texel, std::size_t place)>;
-
-Values each(Values values, const Change& change) {
-    const auto step = static_cast<std::size_t>(values.channels);
-    for (std::size_t k = 0; k < values.of.size(); k += step) change(&values.of[k], k / step);
-    return values;
-}
-
-Change each_channel(double (*by)(double)) {
-    return [by](double* t, std::size_t) { std::transform(t, t + 3, t, by); };
-}
-
-double without_curve(double c) { return curve_back(std::clamp(c, 0.0, 1.0)); }
-double with_curve(double c) { return curve(std::clamp(c, 0.0, 1.0)); }
-
-Change inverted(int channel) {
-    return [channel](double* t, std::size_t) { t[channel] = 1.0 - t[channel]; };
-}
-
-Change exchanged(int a, int b) {
-    return [a, b](double* t, std::size_t) { std::swap(t[a], t[b]); };
-}
-
-double rebuilt_z(const double* t) {
-    const double x = 2.0 * t[0] - 1.0, y = 2.0 * t[1] - 1.0;
-    return 0.5 + 0.5 * std::sqrt(std::max(0.0, 1.0 - x * x - y * y));
-}
-
-struct Damage {
-    std::string name;
-    Change plant, undo;
-    bool likely = false;      // undone with RepairOptions::likely
-    bool needs_y = false;     // is about the direction of green
-    bool needs_blue = false;  // z must be stored
-    bool with_alpha = false;
-    bool needs_heights = false;
-};
-
-const std::vector<Damage>& damages() {
-    static const std::vector<Damage> kDamages = {
-        {"sRGB encoded", each_channel(with_curve), each_channel(without_curve)},
-        {"sRGB decoded", each_channel(without_curve), each_channel(with_curve)},
-        {"premultiplied",
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] *= t[3];
-         },
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = t[3] > 0.0 ? std::min(1.0, t[c] / t[3]) : c == 2 ? 1.0 : 0.5;
-         },
-         false, false, true, true},
-        {"BGR", exchanged(0, 2), exchanged(0, 2), false, false, true},
-        {"gamma 1.2",
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = std::pow(t[c], 1.0 / 1.2);
-         },
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = std::pow(std::max(0.0, t[c]), 1.2);
-         },
-         true, false, true},
-        {"levels to 90 %",
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = std::min(1.0, t[c] / 0.9);
-         },
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] *= 0.9;
-             t[2] = rebuilt_z(t);
-         },
-         true, false, true},
-        {"levels from 10 %",
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = std::max(0.0, (t[c] - 0.1) / 0.9);
-         },
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = 0.1 + 0.9 * t[c];
-         },
-         true, false, true},
-        {"darkened to 0.8",
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] *= 0.8;
-         },
-         [](double* t, std::size_t) {
-             for (int c = 0; c < 3; ++c) t[c] = std::min(1.0, t[c] / 0.8);
-         },
-         false, false, true},
-        {"z from 0 to 1", [](double* t, std::size_t) { t[2] = std::max(0.0, 2.0 * t[2] - 1.0); },
-         [](double* t, std::size_t) { t[2] = 0.5 + 0.5 * t[2]; }, false, false, true},
-        {"blue is 1", [](double* t, std::size_t) { t[2] = 1.0; }, [](double* t, std::size_t) { t[2] = rebuilt_z(t); },
-         false, false, true},
-        {"blue inverted", inverted(2), inverted(2), true, false, true},
-        {"green inverted", inverted(1), inverted(1), true, true},
-        {"x and y exchanged", exchanged(0, 1), exchanged(0, 1), true, true},
-        {"red, with heights", inverted(0), inverted(0), false, true, false, false, true},
-        {"green, with heights", inverted(1), inverted(1), false, true, false, false, true},
-    };
-    return kDamages;
-}
-
-// Pairs that can stand together: the first one happened first.
-std::vector<Damage> pairs() {
-    const std::vector<std::pair<const char*, const char*>> kPairs = {
-        {"sRGB encoded", "premultiplied"},
-        {"sRGB decoded", "premultiplied"},
-        {"BGR", "premultiplied"},
-        {"sRGB encoded", "BGR"},
-        {"sRGB decoded", "BGR"},
-        {"green inverted", "sRGB encoded"},
-        {"green inverted", "sRGB decoded"},
-        {"green inverted", "premultiplied"},
-        {"green inverted", "BGR"},
-        {"green inverted", "blue inverted"},
-        {"blue inverted", "sRGB encoded"},
-        {"blue inverted", "sRGB decoded"},
-        {"blue inverted", "premultiplied"},
-        {"green inverted", "z from 0 to 1"},
-        {"z from 0 to 1", "premultiplied"},
-        {"blue is 1", "green inverted"},
-        {"x and y exchanged", "sRGB encoded"},
-        {"x and y exchanged", "premultiplied"},
-    };
-    const auto named = [](const char* name) {
-        return *std::find_if(damages().begin(), damages().end(), [&](const Damage& d) { return d.name == name; });
-    };
-    std::vector<Damage> all;
-    for (const auto& [first, second] : kPairs) {
-        const Damage a = named(first), b = named(second);
-        Damage& both = all.emplace_back();
-        both.name = a.name + ", " + b.name;
-        both.plant = [a, b](double* t, std::size_t k) { a.plant(t, k), b.plant(t, k); };
-        both.undo = [a, b](double* t, std::size_t k) { b.undo(t, k), a.undo(t, k); };
-        both.likely = true;  // two damages can hide each other
-        both.needs_y = a.needs_y || b.needs_y;
-        both.needs_blue = true;
-        both.with_alpha = a.with_alpha || b.with_alpha;
-    }
-    return all;
-}
 
 Values values_of(const Codes& codes, bool with_alpha) {
     const Codes from = with_alpha ? reference::with_alpha(codes, false) : codes;
@@ -205,10 +60,11 @@ NormalMap map_of(const Values& values) {
     return map;
 }
 
-enum class Storage { rgb8, rgb16, dxt5nm, bc5 };
-constexpr const char* kStorageNames[] = {"8 bits", "16 bits", "DXT5nm", "BC5"};
+enum class Storage { rgb8, rgb16, jpeg, dxt5nm, bc5 };
+constexpr int kStorages = 5, kJpegQuality = 75;
+constexpr const char* kStorageNames[] = {"8 bits", "16 bits", "JPEG 75", "DXT5nm", "BC5"};
 
-bool has_blue(Storage storage) { return storage == Storage::rgb8 || storage == Storage::rgb16; }
+bool has_blue(Storage storage) { return storage != Storage::dxt5nm && storage != Storage::bc5; }
 
 Texture stored_as(const Values& values, Storage storage) {
     Texture texture;
@@ -217,6 +73,12 @@ Texture stored_as(const Values& values, Storage storage) {
         chain.levels.push_back(map_of(values));
         const Encoding encoding = storage == Storage::bc5 ? Encoding::bc5 : Encoding::dxt5nm;
         return *pack(chain, {encoding, YAxis::up, Effort::normal, Metric::component, false});
+    }
+    if (storage == Storage::jpeg) {
+        Codes codes{values.extent, values.channels, {}};
+        for (const double c : values.of)
+            codes.values.push_back(static_cast<unsigned char>(std::lround(255.0 * std::clamp(c, 0.0, 1.0))));
+        return texture_of(reference::jpeg(codes, kJpegQuality));
     }
     const int bits = storage == Storage::rgb8 ? 8 : 16;
     texture.format = *format_of(SampleKind::unorm, bits, values.channels);
@@ -272,7 +134,7 @@ struct Count {
 };
 
 struct Tally {
-    Count of[2][4];  // tune and held out; by storage
+    Count of[2][kStorages];  // tune and held out; by storage
 };
 
 struct Judged {
@@ -280,7 +142,15 @@ struct Judged {
     Tally tally;
 };
 
-void judge(const Codes& codes, const std::string& file, bool held_out, std::vector<Judged>& all) {
+// FNV-1a of the name without its folder.
+bool is_held_out(const std::string& file) {
+    std::uint32_t hash = 2166136261u;
+    for (const char c : file.substr(file.rfind('/') + 1)) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
+    return (hash >> 16) % 2 == 1;
+}
+
+void judge(const Codes& codes, const std::string& file, int storages, std::vector<Judged>& all) {
+    const bool held_out = is_held_out(file);
     CheckOptions checks;
     const auto plain = check(file, stored_as(values_of(codes, false), Storage::rgb8), checks);
     if (!plain || has(*plain, "N206")) return;  // nothing shows on one colour
@@ -300,9 +170,10 @@ void judge(const Codes& codes, const std::string& file, bool held_out, std::vect
         const Values intact = values_of(codes, damage.with_alpha);
         const auto undamaged = unpack(stored_as(intact, Storage::rgb16));
         const Values damaged = each(intact, damage.plant);
-        for (int s = 0; s < 4; ++s) {
+        for (int s = 0; s < storages; ++s) {
             const auto storage = static_cast<Storage>(s);
             if (damage.needs_blue && !has_blue(storage)) continue;
+            if (damage.with_alpha && storage == Storage::jpeg) continue;
             const Texture texture = stored_as(damaged, storage);
             Count& count = row.tally.of[held_out ? 1 : 0][s];
             if (angle_to(undamaged->levels.front(), texture) < kVisible) continue;
@@ -388,11 +259,12 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "--all") return list_changed();
     const bool is_of_pairs = argc > 1 && std::string_view(argv[1]) == "--pairs";
     const char* const count = is_of_pairs ? (argc > 2 ? argv[2] : nullptr) : (argc > 1 ? argv[1] : nullptr);
+    const int storages = is_of_pairs ? 1 : argc > 2 ? std::clamp(std::atoi(argv[2]), 1, kStorages) : kStorages;
     std::vector<Judged> all;
-    for (const Damage& damage : is_of_pairs ? pairs() : damages()) all.push_back({damage, {}});
+    for (const Damage& damage : is_of_pairs ? damage_pairs() : damages()) all.push_back({damage, {}});
     const std::vector<std::string> files = clean_maps(static_cast<std::size_t>(count ? std::atoi(count) : 40));
-    for (std::size_t k = 0; k < files.size(); ++k) {
-        if (const auto codes = middle_of(files[k])) judge(*codes, files[k], k % 2 == 1, all);
+    for (const std::string& file : files) {
+        if (const auto codes = middle_of(file)) judge(*codes, file, storages, all);
     }
     print(all, 0);
     print(all, 1);

@@ -16,55 +16,9 @@
 #include <tex/pack.h>
 
 #include "reference/damage.h"
+#include "unit/repaired_maps.h"
 
-namespace tex {
-namespace {
-
-using reference::Codes;
-
-// A surface without a preferred direction, y up.
-NormalMap bumps(float bumpiness = 9.0f) {
-    constexpr int side = 384;
-    HeightField field{Plane<float>(Extent{side, side}), bumpiness, bumpiness, Wrap::repeat, Wrap::repeat};
-    const double turn = 2.0 * 3.14159265358979 / side;
-    for (int k = 0; k < side * side; ++k) {
-        const double x = turn * (k % side), y = turn * (k / side);
-        field.height.at(k % side, k / side) =
-            static_cast<float>(0.5 + 0.15 * std::sin(9 * x + 6 * y) + 0.12 * std::sin(15 * x - 12 * y + 1.0) +
-                               0.1 * std::sin(6 * x + 21 * y + 2.0) * std::cos(18 * x));
-    }
-    return *bake(field);
-}
-
-const Codes& clean() {
-    static const Codes kCodes = reference::codes_of(bumps());
-    return kCodes;
-}
-
-Repaired repaired(const Texture& texture, const RepairOptions& options = {}) {
-    auto done = repair("map", texture, options);
-    EXPECT_TRUE(done) << done.error().message();
-    return done ? std::move(*done) : Repaired();
-}
-
-std::vector<unsigned char> codes_in(const Texture& texture) {
-    std::vector<unsigned char> codes;
-    for (const std::byte byte : texture.levels.front().bytes) codes.push_back(static_cast<unsigned char>(byte));
-    return codes;
-}
-
-// The rules of the steps, and what they did.
-std::string plan_of(const Repaired& done) {
-    std::string text;
-    for (const RepairStep& step : done.steps)
-        text += std::string(text.empty() ? "" : ", ") + std::string(step.rule->id) + " " + text_of(step);
-    return text;
-}
-
-double angle(const Texture& a, const Texture& b) {
-    const auto x = unpack(a), y = unpack(b);
-    return compare(x->levels.front(), y->levels.front())->error.mean;
-}
+namespace tex::repaired_maps {
 
 TEST(Repair, LeavesACleanMapAsItIs) {
     const Repaired done = repaired(reference::texture_of(clean()));
@@ -196,35 +150,6 @@ TEST(Repair, TurnsRedOverInAPictureThatWasMirrored) {
     ASSERT_TRUE(done.texture);
     EXPECT_EQ(codes_in(*done.texture), clean().values);
     EXPECT_EQ(plan_of(repaired(reference::texture_of(mirrored), options)), "N401 invert R");
-}
-
-// What image editors do, in double, and then rounded to 8 bits.
-TEST(Repair, TakesChangesOfLevelsBack) {
-    const auto changed = [](auto&& by) {
-        Codes codes = clean();
-        for (unsigned char& code : codes.values)
-            code = static_cast<unsigned char>(std::floor(std::clamp(by(code / 255.0), 0.0, 1.0) * 255.0 + 0.5));
-        return reference::texture_of(codes);
-    };
-    const Texture plain = reference::texture_of(clean());
-    const auto expect = [&](const Texture& damaged, const std::string& plan, double most) {
-        RepairOptions options;
-        options.likely = true;
-        const Repaired done = repaired(damaged, options);
-        ASSERT_TRUE(done.texture) << plan;
-        EXPECT_EQ(plan_of(done).substr(0, plan.size()), plan);
-        EXPECT_LT(angle(*done.texture, plain), most) << plan_of(done);
-        EXPECT_GT(angle(damaged, plain), 2 * most);
-    };
-    expect(changed([](double c) { return std::pow(c, 1.0 / 1.2); }), "N314 take gamma 1.", 0.6);
-    expect(changed([](double c) { return std::pow(c, 1.25); }), "N314 take gamma 0.8", 0.6);
-    expect(changed([](double c) { return (c - 0.1) / 0.9; }), "N314 take levels from ", 1.0);
-    expect(changed([](double c) { return c / 0.9; }), "N314 take levels from ", 1.0);
-    expect(changed([](double c) { return 0.6 * c; }), "N313 divide by 0.6", 0.6);
-    RepairOptions likely;
-    likely.likely = true;
-    const Repaired stretched = repaired(changed([](double c) { return (c - 0.04) / 0.92; }), likely);
-    EXPECT_EQ(plan_of(stretched).substr(0, 10), "N201 take ") << plan_of(stretched);
 }
 
 TEST(Repair, BakesHeightsWhoseBumpinessIsGiven) {
@@ -410,5 +335,4 @@ TEST(Repair, HasARowForEveryRepair) {
     EXPECT_EQ(repair_class(*find_rule("N222")), RepairClass::never);
 }
 
-}  // namespace
-}  // namespace tex
+}  // namespace tex::repaired_maps

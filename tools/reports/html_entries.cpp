@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <tex/check.h>
 #include <tex/format.h>
-#include <tex/preview.h>
 
 #include "reports/findings.h"
 #include "reports/fixes.h"
 #include "reports/html.h"
 #include "reports/html_marks.h"
+#include "reports/html_pairs.h"
 #include "reports/html_report.h"
 
 namespace tex::cli {
@@ -108,37 +108,6 @@ std::string facts_html(const CheckReport& report) {
 
 // -- compare-normals ---------------------------------------------------------------------------------------
 
-constexpr int kPictureSide = 384;  // of the pictures of both maps
-
-Result<HtmlPicture> split_picture(const HtmlMap& a, const HtmlMap& b) {
-    PreviewOptions options;
-    options.size = {kPictureSide, 0};
-    std::vector<Panel> panels;
-    for (const HtmlMap* map : {&a, &b}) {
-        PreviewScene scene;
-        scene.map = &map->chain;
-        scene.map_without_z = map->without_z();
-        auto picture = preview(scene, options);
-        if (!picture) return picture.error();
-        panels.push_back({std::move(*picture), map == &a ? "A" : "B"});
-    }
-    const auto split = split_view(panels[0], panels[1]);
-    if (!split) return split.error();
-    return html_picture(*split, "A on the left, B on the right",
-                        "the left half of A and the right half of B, lit from the upper left");
-}
-
-Result<HtmlPicture> heat_picture(const Plane<float>& degrees, double scale) {
-    const auto cells = largest_of_cells(degrees, kPictureSide);
-    if (!cells) return cells.error();
-    const auto image = heat_map(*cells, std::clamp(scale, 0.01, 180.0));
-    if (!image) return image.error();
-    const auto picture = picture_of(*image);
-    if (!picture) return picture.error();
-    return html_picture(*picture, "angle between A and B, degrees",
-                        "the angles as a picture, black 0 to pale yellow at the legend's end");
-}
-
 std::string level_row(const ComparedLevel& level) {
     const AngularError& e = level.error;
     std::string html = fmt::format("<tr{}><th scope=\"row\">{}</th><td>{}</td>", level.within ? "" : " class=\"over\"",
@@ -230,9 +199,9 @@ Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMa
     for (const ComparedLevel& level : levels) entry.body += level_row(level);
     entry.body += "</tbody>\n</table></div>\n";
 
-    auto split = split_picture(a, b);
+    auto split = split_picture(a, b, {"A", "B"});
     if (!split) return split.error();
-    auto heat = heat_picture(degrees, scale.value_or(first.error.max));
+    auto heat = heat_picture(degrees, scale.value_or(first.error.max), "A and B");
     if (!heat) return heat.error();
     entry.extras.push_back(std::move(*split));
     entry.extras.push_back(std::move(*heat));

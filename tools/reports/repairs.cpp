@@ -42,6 +42,8 @@ std::string_view what_repairs(const FaultLeft& fault) {
     if (fault.certainty == RepairClass::likely) return "; --likely repairs it";
     if (fault.certainty != RepairClass::choice) return "";
     if (fault.finding.rule->id == "N210") return "; if these are heights, --bumpiness B bakes them";
+    if (fault.finding.rule->id == "N308")
+        return "; --turned left or --turned right repairs it, as the picture was turned; --height FILE shows which";
     return "; --mirrored green repairs it if the map is of the other convention, and --mirrored red if the picture was "
            "mirrored from left to right; --height FILE shows which";
 }
@@ -63,6 +65,15 @@ std::string repairs_text(const std::string& name, const Repaired& repaired) {
                             finding.rule->id, finding.rule->name, printable(statement), what_repairs(fault));
     }
     return text;
+}
+
+std::string_view manifest_words(const FaultLeft& fault) {
+    if (fault.certainty == RepairClass::likely) return " (likely = true repairs it)";
+    if (fault.certainty != RepairClass::choice) return "";
+    const std::string_view id = fault.finding.rule->id;
+    if (id == "N210") return " (bumpiness = B bakes them)";
+    if (id == "N308") return " (turned = \"left\" or \"right\" repairs it)";
+    return " (mirrored = \"green\" or \"red\" repairs it)";
 }
 
 Json repairs_json(const Repaired& repaired) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <tex/repair.h>
 
@@ -14,6 +15,9 @@ namespace tex::cli {
 // One line for each step and for each error and warning that is left: "a.png: N302 srgb-encoded: decode with the sRGB
 // curve (safe), 12.3 degrees". Empty for a map without either.
 [[nodiscard]] std::string repairs_text(const std::string& name, const Repaired& repaired);
+
+// What a manifest says to repair a fault that is left: " (likely = true repairs it)"; or nothing.
+[[nodiscard]] std::string_view manifest_words(const FaultLeft& fault);
 
 // What --json prints of it, with notes, too.
 [[nodiscard]] Json repairs_json(const Repaired& repaired);

@@ -39,6 +39,14 @@ inline constexpr Named<MirroredChannel> kMirroredChannelNames[] = {
     {MirroredChannel::red, "red", "red, as in a picture that was mirrored from left to right"},
 };
 
+// Which way a picture was turned by 90 degrees beside its vectors (N308).
+enum class TurnedPicture { left, right };
+
+inline constexpr Named<TurnedPicture> kTurnedPictureNames[] = {
+    {TurnedPicture::left, "left", "to the left, counterclockwise"},
+    {TurnedPicture::right, "right", "to the right, clockwise"},
+};
+
 // What a step does. "Channels" are those that hold x, y and z.
 enum class RepairKind {
     change_sign,
@@ -58,6 +66,9 @@ enum class RepairKind {
     fill_background,
     normalize,
     rebuild_levels,
+    turn_left,
+    turn_right,
+    smooth_steps,
 };
 
 inline constexpr Named<RepairKind> kRepairKindNames[] = {
@@ -78,6 +89,9 @@ inline constexpr Named<RepairKind> kRepairKindNames[] = {
     {RepairKind::fill_background, "fill-background", "fill the background with the nearest normals"},
     {RepairKind::normalize, "normalize", "make vectors unit"},
     {RepairKind::rebuild_levels, "rebuild-levels", "build the smaller levels from the base level"},
+    {RepairKind::turn_left, "turn-left", "turn all vectors by 90 degrees to the left, as the picture was"},
+    {RepairKind::turn_right, "turn-right", "turn all vectors by 90 degrees to the right, as the picture was"},
+    {RepairKind::smooth_steps, "smooth-steps", "smooth the steps between few values"},
 };
 
 // What repair() does about a rule.
@@ -88,11 +102,13 @@ struct RuleRepair {
 };
 
 // All of them, in the order in which they are applied. Steps that say how bytes are read come first, then those of
-// channels, of directions, of vectors, of levels. N308 has two rows: a channel that holds z in the wrong place is safe;
-// x and y exchanged is likely, and is undone only if the direction of green is required or stated by the file. N401 and
-// N404 are safe if the heights or RepairOptions::mirrored decide, and N210 if RepairOptions::bumpiness is given;
-// without these they are a choice, which repair() does not make. N112 inverts green as the file states it, which is
-// safe; if the texels show that green is as required, the statement changes instead, which is likely.
+// channels, of directions, of vectors, of levels. N308 has three rows: a channel that holds z in the wrong place is
+// safe; x and y exchanged is likely, and is undone only if the direction of green is required or stated by the file; a
+// picture that was turned is a choice, and safe if RepairOptions::turned or, with that direction, the heights say how.
+// N401 and N404 are safe if the heights or RepairOptions::mirrored decide, and N210 if RepairOptions::bumpiness is
+// given; without these they are a choice, which repair() does not make. N112 inverts green as the file states it, which
+// is safe; if the texels show that green is as required, the statement is wrong or red is mirrored, which is a choice,
+// too.
 [[nodiscard]] TEX_API std::span<const RuleRepair> rule_repairs();
 
 // The lowest class of a rule's rows; never if it has none.
@@ -122,6 +138,7 @@ struct RepairOptions {
     std::vector<std::string> only = {};            // ids or names of rules; empty: all
     std::vector<std::string> skip = {};            // takes precedence over `only`
     std::optional<MirroredChannel> mirrored = {};  // which channel N401 and N404 are about; none: the heights decide
+    std::optional<TurnedPicture> turned = {};      // how the picture of N308 was turned; none: the heights decide
     std::optional<float> bumpiness = {};   // bakes heights in place of normals (N210): the height of white in texels
     Effort effort = PackOptions{}.effort;  // of block encoders
     MipOptions mip = {};                   // of levels that are built
@@ -133,7 +150,7 @@ struct RepairOptions {
 // A fault that is left.
 struct FaultLeft {
     Finding finding;
-    // likely: RepairOptions::likely would repair it; choice: RepairOptions::mirrored or bumpiness would.
+    // likely: RepairOptions::likely would repair it; choice: RepairOptions::mirrored, turned or bumpiness would.
     RepairClass certainty = RepairClass::never;
 };
 
@@ -162,6 +179,9 @@ struct Repaired {
 //     undo_tone          c' = black + (white - black) c^gamma, of RepairStep::tone
 //     invert             c' = 1 - c, or -c if values are signed
 //     stretch_z          c' = (c + 1) / 2
+//     turn_left          (x, y)' = (-y, x), with y up; turn_right is its inverse
+//     smooth_steps       the field of least bending within half a step of the values, as deband() finds it, of x and of
+//                        y; z as x and y imply it, within half a step, too; smaller levels are built again
 //
 // Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
 // Errors: bad_option (see validate()), out_of_memory, cancelled.

@@ -12,7 +12,9 @@
 #include <tex/pack.h>
 #include <tex/types.h>
 
+#include "checks/centre.h"
 #include "checks/channel_order.h"
+#include "checks/tone.h"
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
 #include "rows/extra_rows.h"
@@ -70,6 +72,18 @@ bool are_bright_colors(const CheckContext& context) {
            is_positive(Component::x) && is_positive(Component::y) && counts.share(Property::off_length) > kMostOff;
 }
 
+// Where levels were changed, blue does not follow x and y as z does, and few vectors are of unit length.
+bool is_after_change_of_levels(const CheckContext& context) {
+    constexpr double kLead = 4.0;  // of what seems to be no map
+    const Stored& stored = context.stored;
+    const bool is_doubtful = context.kind == Kind::two_components || context.kind == Kind::no_map;
+    const Extent extent = stored.extent();
+    if (!is_doubtful || !stored.has_z() || std::min(extent.width, extent.height) < kLeastSampledSide) return false;
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const auto fit = find_tone(stored, measure_centre(stored, background), background);
+    return fit && (context.kind == Kind::two_components || fit->error * kLead < fit->as_stored);
+}
+
 // Decides whether there are normals at all, and which channels hold them.
 Result<void> decide_kind(CheckContext& context) {
     Stored& stored = context.stored;
@@ -115,6 +129,7 @@ Result<void> decide_kind(CheckContext& context) {
     const bool has_value = context.background && context.background->texels > 0;
     if (context.kind == Kind::two_components && has_value && !context.kind_measure.alpha_varies)
         context.kind = Kind::normals;
+    if (is_after_change_of_levels(context)) context.kind = Kind::normals;
     if (context.kind == Kind::two_components) {
         for (Component& held : stored.swizzle) held = held == Component::z ? Component::other : held;
     } else if (context.kind == Kind::x_ray) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "checks/comb.h"
 #include "checks/context.h"
 #include "checks/lengths.h"
 #include "checks/thresholds.h"
@@ -38,6 +39,20 @@ double unit_factor(const Stored& stored) {
     return *middle;
 }
 
+// People darken by round shares. The number that the histogram of 8 bits shows, else one of twentieths that is near.
+double rounded_factor(const CheckContext& context, double factor) {
+    constexpr double kAbout = 0.03, kNear = 0.012, kRound = 0.05;
+    std::vector<ToneCurve> usual;
+    for (int k = 10; k < 100; ++k) {
+        if (std::abs(k / 100.0 - factor) <= kAbout) usual.push_back({0.0, 100.0 / k, 1.0});
+    }
+    const Background* const background = context.background ? &*context.background : nullptr;
+    if (const CombFit fit = CodeComb(context.stored, background).best(usual); fit.is_proof())
+        return 1.0 / fit.curve.white;
+    const double round = kRound * std::floor(factor / kRound + 0.5);
+    return std::abs(round - factor) <= kNear ? round : factor;
+}
+
 // All channels multiplied by one number: where an opacity was flattened on black, or a picture darkened. Then dividing
 // by it makes the vectors unit vectors, and x and y centre on half of it, not on the middle, on which those of maps
 // with short vectors do. The curve of sRGB moves the centre as well, but leaves 1 where it is. Returns whether it was
@@ -45,8 +60,9 @@ double unit_factor(const Stored& stored) {
 bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
     if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
     if (context.stored.extent().texels() < kLeastDarkenedTexels) return false;
-    const double factor = unit_factor(context.stored);
-    if (factor > kLeastDarkened || centre.distance(factor / 2.0) > centre.distance(0.5) / 2.0) return false;
+    const double measured = unit_factor(context.stored);
+    if (measured > kLeastDarkened || centre.distance(measured / 2.0) > centre.distance(0.5) / 2.0) return false;
+    const double factor = rounded_factor(context, measured);
     const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
     const double decoded =
         length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
@@ -84,7 +100,7 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     finding.unit = is_gamma ? "gamma" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
     constexpr double kClearlyBetter = 0.7, kClear = 0.99, kUnclear = 0.9;
-    finding.confidence = fit->error < kClearlyBetter * fit->other ? kClear : kUnclear;
+    finding.confidence = fit->is_in_codes || fit->error < kClearlyBetter * fit->other ? kClear : kUnclear;
     finding.tone = curve;
 }
 

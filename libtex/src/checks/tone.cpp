@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "checks/comb.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -23,6 +24,7 @@ constexpr double kMiddleAfter = 0.02;
 constexpr double kContrastLead = 3.0;
 constexpr double kLeastContrastError = 1.5, kMostContrastError = 1.5;
 constexpr double kMostSpan = 0.95;                  // white - black
+constexpr double kMostUneven = 0.02;                // of black and white from both ends
 constexpr std::int64_t kLeastToneTexels = 64 * 64;  // in pixel art, chance makes any curve fit
 constexpr std::int64_t kToneTexels = 1 << 14;
 
@@ -53,24 +55,19 @@ ToneTexels tone_texels(const Stored& stored, const Background* background) {
     return texels;
 }
 
-double undone(const ToneCurve& curve, double c) {
-    const double power = curve.gamma == 1.0 ? c : math::pow(c, curve.gamma);
-    return curve.black + (curve.white - curve.black) * power;
-}
-
-double redone(const ToneCurve& curve, double c) {
-    const double level = std::clamp((c - curve.black) / (curve.white - curve.black), 0.0, 1.0);
-    return curve.gamma == 1.0 ? level : math::pow(level, 1.0 / curve.gamma);
-}
+// How z was stored before levels were changed.
+enum class ZForm { whole, inverted, from_zero };
 
 // The mean distance, in codes, of z as it is stored from what the curve makes of the z of x and y. Where x and y leave
 // the unit circle, they add how far.
-double error_of(const ToneCurve& curve, const ToneTexels& texels) {
+double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole) {
     double sum = 0.0;
     for (const auto& [x, y, z] : texels) {
         const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
         const double square = 1.0 - a * a - b * b;
-        const double expected = redone(curve, 0.5 + 0.5 * std::sqrt(std::max(0.0, square)));
+        const double root = std::sqrt(std::max(0.0, square));
+        const double before = form == ZForm::whole ? 0.5 + 0.5 * root : form == ZForm::inverted ? 0.5 - 0.5 * root : root;
+        const double expected = redone(curve, before);
         sum += std::abs(expected - z) + 0.5 * std::max(0.0, -square);
     }
     return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
@@ -109,7 +106,62 @@ ToneCandidate best_levels(double middle, double as_stored, const ToneTexels& tex
     return *std::find_if(all.begin(), all.end(), [most](const ToneCandidate& one) { return one.error <= most; });
 }
 
+// z shows that there was a change, but many curves explain it about as well. The one that the codes speak for, if any;
+// else the roundest of the same family, because people choose round numbers.
+ToneCandidate sharpened(const ToneCandidate& best, const CombFit& in_codes, const std::vector<ToneCurve>& usual,
+                        const ToneTexels& texels) {
+    constexpr double kHint = 0.2, kAlike = 0.3, kAlikeCodes = 0.1;
+    if (in_codes.score >= kHint) {
+        const ToneCandidate found{in_codes.curve, error_of(in_codes.curve, texels)};
+        if (found.error <= best.error * (1.0 + kAlike) + kAlikeCodes) return found;
+    }
+    constexpr double kAbout = 0.03, kAboutCodes = 0.03, kNear = 0.04;
+    const double most = best.error * (1.0 + kAbout) + kAboutCodes;
+    const bool is_gamma = best.curve.gamma != 1.0;
+    const bool is_beyond = best.curve.black < -0.01 || best.curve.white > 1.01;
+    ToneCandidate chosen = best;
+    int chosen_roundness = roundness(best.curve) + 1;
+    for (const ToneCurve& curve : usual) {
+        if (roundness(curve) > chosen_roundness) continue;
+        const bool is_alike = (curve.gamma != 1.0) == is_gamma;
+        const bool is_near = std::abs(curve.gamma - best.curve.gamma) <= kNear &&
+                             std::abs(curve.black - best.curve.black) <= kNear &&
+                             std::abs(curve.white - best.curve.white) <= kNear;
+        // Nobody stretches levels beyond their ends; then it may be a curve of the other family.
+        if (is_alike ? !is_near : !is_beyond || roundness(curve) > 0) continue;
+        const double error = error_of(curve, texels);
+        if (error > most || (roundness(curve) == chosen_roundness && error >= chosen.error)) continue;
+        chosen = {curve, error};
+        chosen_roundness = roundness(curve);
+    }
+    return chosen;
+}
+
+// z may contradict what the codes show by so much, where vectors were no unit vectors before.
+bool agrees(ToneCandidate& found, const ToneTexels& texels) {
+    constexpr double kMostMore = 1.75;
+    ZForm best = ZForm::whole;
+    found.error = error_of(found.curve, texels);
+    for (const ZForm form : {ZForm::inverted, ZForm::from_zero}) {
+        const double error = error_of(found.curve, texels, form);
+        if (error >= found.error) continue;
+        found.error = error;
+        best = form;
+    }
+    return found.error <= kMostMore * error_of({}, texels, best);
+}
+
 }  // namespace
+
+double undone(const ToneCurve& curve, double c) {
+    const double power = curve.gamma == 1.0 ? c : math::pow(c, curve.gamma);
+    return curve.black + (curve.white - curve.black) * power;
+}
+
+double redone(const ToneCurve& curve, double c) {
+    const double level = std::clamp((c - curve.black) / (curve.white - curve.black), 0.0, 1.0);
+    return curve.gamma == 1.0 ? level : math::pow(level, 1.0 / curve.gamma);
+}
 
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background) {
     const double middle = (centre.x + centre.y) / 2.0, off = std::abs(middle - 0.5);
@@ -118,6 +170,12 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
         return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
     const double as_stored = error_of({}, texels);
+    const std::vector<ToneCurve> usual = usual_tones(centre);
+    const CombFit in_codes = CodeComb(stored, background).best(usual);
+    if (in_codes.is_proof()) {
+        ToneCandidate found{in_codes.curve};
+        if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
+    }
     if (as_stored < kLeastToneError) return std::nullopt;
     const ToneCandidate gamma = best_gamma(middle, texels), levels = best_levels(middle, as_stored, texels);
     const bool is_gamma = gamma.error < levels.error;
@@ -126,18 +184,30 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     for (const double c : {centre.x, centre.y}) {
         if (std::abs(undone(best.curve, c) - 0.5) > kMiddleAfter) return std::nullopt;
     }
-    return ToneFit{best.curve, as_stored, best.error, is_gamma ? levels.error : gamma.error};
+    const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
+    return ToneFit{chosen.curve, as_stored, chosen.error, is_gamma ? levels.error : gamma.error};
 }
 
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background) {
     if (centre.distance(0.5) > kOffMiddle || stored.extent().texels() < kLeastToneTexels) return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
     const double as_stored = error_of({}, texels);
+    std::vector<ToneCurve> usual = usual_tones(centre);
+    std::erase_if(usual, [](const ToneCurve& curve) {
+        return curve.gamma != 1.0 || std::abs(curve.black + curve.white - 1.0) > kMostUneven ||
+               curve.white - curve.black > kMostSpan;
+    });
+    const CombFit in_codes = CodeComb(stored, background).best(usual);
+    if (in_codes.is_proof()) {
+        ToneCandidate found{in_codes.curve};
+        if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
+    }
     if (as_stored < kLeastContrastError) return std::nullopt;
     const ToneCandidate best = best_levels(0.5, as_stored, texels);
     const bool is_proven = best.error < kMostContrastError && best.error < as_stored / kContrastLead;
     if (!is_proven || best.curve.white - best.curve.black > kMostSpan) return std::nullopt;
-    return ToneFit{best.curve, as_stored, best.error, as_stored};
+    const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
+    return ToneFit{chosen.curve, as_stored, chosen.error, as_stored};
 }
 
 int few_levels(const Stored& stored) {

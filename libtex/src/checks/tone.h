@@ -19,7 +19,12 @@ struct ToneFit {
     ToneCurve curve;
     double as_stored = 0.0, error = 0.0;  // without the curve, and with it
     double other = 0.0;                   // with the best curve of the other family: levels, or gamma
+    bool is_in_codes = false;             // the histogram of 8 bits shows this curve and no other
 };
+
+// What a curve was before levels were changed, and what it becomes.
+double undone(const ToneCurve& curve, double c);
+double redone(const ToneCurve& curve, double c);
 
 // The change of levels of all channels that moved x and y off the middle. Nothing if they are there, or if the lengths
 // of vectors do not prove it. Precondition: x, y and z are stored, unsigned.

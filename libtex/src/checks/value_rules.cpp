@@ -36,9 +36,11 @@ void find_contrast_of(const CheckContext& context, Finding& finding) {
     if (!stored.has_z() || stored.is_signed || context.kind != Kind::normals) return;
     const Background* const background = context.background ? &*context.background : nullptr;
     const auto fit = find_contrast(stored, measure_centre(stored, background), background);
-    if (!fit) return;
+    const bool is_by_z = finding.rule->id == "N201";  // and not constant
+    if (!fit || (!is_by_z && !fit->is_in_codes)) return;
     finding.tone = fit->curve;
-    finding.message += "; z fits x and y if a contrast of " + decimal(1.0 / (fit->curve.white - fit->curve.black), 2) +
+    finding.message += std::string(is_by_z ? "; z fits x and y" : "; the codes of x and y show no gaps") +
+                       " if a contrast of " + decimal(1.0 / (fit->curve.white - fit->curve.black), 2) +
                        " is taken back";
 }
 
@@ -127,8 +129,9 @@ void check_channels(const CheckContext& context, Findings& findings) {
         return stored.in_blocks && range(cz) <= kBlockError && varies > kSteepRange;
     };
     if (cz >= 0 && is_filler()) {
-        findings.add("N209", "blue is " + decimal(static_cast<double>(counts.low[static_cast<std::size_t>(cz)]), 3) +
-                                 " everywhere");
+        const float blue = counts.low[static_cast<std::size_t>(cz)];
+        Finding& finding = findings.add("N209", "blue is " + decimal(static_cast<double>(blue), 3) + " everywhere");
+        if (blue == 1.0f) find_contrast_of(context, finding);  // which may have cut all of z off
     }
     if (counts[Property::red_not_one].count > 0) {
         add_counted(context, findings, "N211", Property::red_not_one, " have R below 255");

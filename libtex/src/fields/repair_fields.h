@@ -17,6 +17,7 @@ void each_field(O& o, F& f) {
     f("only", o.only);
     f("skip", o.skip);
     f("mirrored", o.mirrored, kMirroredChannelNames);
+    f("turned", o.turned, kTurnedPictureNames);
     f("bumpiness", o.bumpiness, Range{.least = 1e-20, .greatest = 1e20, .of_magnitude = true});
     f("effort", o.effort, kEffortNames);
     f("mip", o.mip);

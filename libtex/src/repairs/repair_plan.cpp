@@ -29,6 +29,8 @@ constexpr RuleRepair kRepairs[] = {
     // Which channel holds what.
     {"N308", safe, exchange},
     {"N308", likely, exchange},
+    {"N308", choice, turn_left},
+    {"N308", choice, turn_right},
     {"N220", likely, invert},
     {"N221", safe, stretch_z},
     {"N209", safe, rebuild_z},
@@ -37,9 +39,13 @@ constexpr RuleRepair kRepairs[] = {
     {"N401", choice, invert},
     {"N404", choice, state_y},
     {"N112", safe, invert},
+    {"N601", safe, turn_left},
+    {"N601", safe, turn_right},
+    {"N601", safe, exchange},
     // What are no normals yet.
     {"N210", choice, bake_heights},
     // Vectors.
+    {"N315", likely, smooth_steps},
     {"N215", likely, fill_background},
     {"N207", likely, straighten},
     {"N205", likely, normalize},
@@ -75,6 +81,16 @@ std::vector<RepairStep> exchanges(const RepairStep& step, const Finding& finding
         add(x, y);
     }
     return steps;
+}
+
+// The vectors are turned as the picture was. Either turn suits the slopes; one makes dents of bumps, which heights show.
+// Heights that the slopes do not follow (N601) may follow after a turn, or after x and y are exchanged.
+std::vector<RepairStep> turns(RepairStep step, const Finding& finding, const KnownOfMap& known) {
+    const bool by_heights = known.heights && known.y, is_of_heights = finding.rule->id == "N601";
+    if (finding.unit == "component" || (is_of_heights && !by_heights)) return {};
+    if (known.turned && (*known.turned == TurnedPicture::left) != (step.kind == turn_left)) return {};
+    if (known.turned || by_heights) step.certainty = safe;
+    return {step};
 }
 
 constexpr double kSurely = 0.95;  // Finding::confidence of a tone
@@ -129,11 +145,22 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
     const bool is_decided = by_heights || known.mirrored;
     const bool is_red = by_heights ? report.pair->strength < 0.0 : known.mirrored == MirroredChannel::red;
     switch (row.kind) {
-        case exchange: return exchanges(step, finding, report, known.y);
+        case exchange:
+            if (row.rule != "N601") return exchanges(step, finding, report, known.y);
+            if (!known.heights || !known.y) return {};
+            step.channel = std::min(x, y);
+            step.other = std::max(x, y);
+            break;
+        case turn_left:
+        case turn_right: return turns(step, finding, known);
         case invert:
             step.channel = row.rule == "N220" ? z : is_red ? x : y;
             if (row.rule == "N401" && is_decided) step.certainty = safe;
-            if (row.rule == "N112" && report.y.y) step = {finding.rule, state_y, likely};  // green is as required
+            // Green is as required, so the statement is wrong, or red is mirrored.
+            if (row.rule == "N112" && report.y.y) {
+                if (is_decided && is_red) return {};
+                step = {finding.rule, state_y, is_decided ? safe : choice};
+            }
             if (step.kind == invert && step.channel < 0) return {};
             break;
         case state_y:
@@ -148,6 +175,7 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             break;
         case rebuild_z:
             if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
+            if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}, step};
             break;
         case undo_tone:
             if (!finding.tone || z < 0) return {};

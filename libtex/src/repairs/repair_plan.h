@@ -15,6 +15,8 @@ struct KnownOfMap {
     bool y = false;  // the direction of green is required or stated
     std::optional<MirroredChannel> mirrored = {};
     bool bumpiness = false;
+    std::optional<TurnedPicture> turned = {};
+    bool heights = false;
 };
 
 // The steps to try for this row of rule_repairs(), the likeliest first; none if it does not concern the finding, or if

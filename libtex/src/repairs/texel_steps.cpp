@@ -17,6 +17,7 @@
 
 #include "checks/centre.h"
 #include "checks/texel_counts.h"
+#include "repairs/smooth_steps.h"
 #include "rows/math.h"
 #include "rows/unpack_rows.h"
 #include "stream/filled_map.h"
@@ -326,6 +327,18 @@ Result<void> apply_step(const RepairStep& step, const RepairOptions& options, co
         case RepairKind::undo_tone:
             return row_change([&](const LevelTexels& t, int j) { undo_tone_row(t, *step.tone, j); });
         case RepairKind::straighten: return turn_mean_out(levels, execution);
+        case RepairKind::turn_left:
+        case RepairKind::turn_right: {
+            const bool is_down = options.checks.require.y.value_or(current.y_axis) == YAxis::down;
+            const bool inverts_x = (step.kind == RepairKind::turn_left) != is_down;
+            return row_change([inverts_x](const LevelTexels& t, int j) {
+                std::swap_ranges(t.row(t.x, j), t.row(t.x, j) + t.image.extent().width, t.row(t.y, j));
+                invert_row(t, inverts_x ? t.x : t.y, j, 0, t.image.extent().width);
+            });
+        }
+        case RepairKind::smooth_steps:
+            if (auto done = smooth_base(levels, execution); !done) return done;
+            return levels.levels.size() > 1 ? build_levels(mip, false, levels, execution) : Result<void>();
         case RepairKind::bake_heights: return bake_picture(options, current, levels, execution);
         case RepairKind::change_sign:
         case RepairKind::drop_srgb:

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/comb.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "checks/tone.h"
+
+namespace tex::inline v1 {
+namespace {
+
+constexpr int kCombRadius = 6;          // of the mean about a code
+constexpr double kLeastCombMean = 8.0;  // texels
+constexpr double kMostRelative = 2.5;   // flat texels alone are no comb
+constexpr int kCombEnds = 3;            // cut off codes gather at the ends
+constexpr double kLeastCombScore = 0.3, kLeastCombProof = 6.0;
+constexpr double kCombMiddle = 0.02;
+constexpr double kLeastOpaque = 0.05;  // share of texels
+
+using CombCounts = CodeComb::Counts;
+
+// The mean about each code; the ends are mirrored.
+CombCounts means_about(const CombCounts& counts) {
+    CombCounts means{};
+    for (int code = 0; code < CodeComb::kCodes; ++code) {
+        double sum = 0.0;
+        for (int k = code - kCombRadius; k <= code + kCombRadius; ++k) {
+            const int inside = k < 0 ? -k : k >= CodeComb::kCodes ? 2 * CodeComb::kCodes - 2 - k : k;
+            sum += counts[static_cast<std::size_t>(inside)];
+        }
+        means[static_cast<std::size_t>(code)] = sum / (2 * kCombRadius + 1);
+    }
+    return means;
+}
+
+// How many codes become each one. Programs add `half`, a half of a code, or cut off what is behind the point
+// (ImageMagick 6).
+CombCounts shares_of(const ToneCurve& curve, double half) {
+    CombCounts shares{};
+    for (int code = 0; code < CodeComb::kCodes; ++code)
+        shares[static_cast<std::size_t>(255.0 * redone(curve, code / 255.0) + half)] += 1.0;
+    const CombCounts means = means_about(shares);
+    for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = means[k] > 0.0 ? shares[k] / means[k] : 0.0;
+    return shares;
+}
+
+double share_of_ones(const Plane<float>& alpha) {
+    double ones = 0.0;
+    for (int j = 0; j < alpha.extent().height; ++j) {
+        const float* const row = alpha.row(j);
+        ones += static_cast<double>(std::count(row, row + alpha.extent().width, 1.0f));
+    }
+    return ones / static_cast<double>(alpha.extent().texels());
+}
+
+bool is_multiple(double value, double of) { return std::abs(value / of - std::floor(value / of + 0.5)) < 1e-6; }
+
+}  // namespace
+
+bool CombFit::is_proof() const {
+    return score >= kLeastCombScore && score * std::sqrt(static_cast<double>(codes)) >= kLeastCombProof;
+}
+
+CodeComb::CodeComb(const Stored& stored, const Background* background) {
+    const Extent extent = stored.extent();
+    // What was divided by alpha was rounded twice.
+    const auto& planes = stored.image->planes;
+    const Plane<float>* alpha = planes.size() == 4 && stored.channel(Component::x) != 3 ? &planes[3] : nullptr;
+    if (alpha != nullptr && share_of_ones(*alpha) < kLeastOpaque) alpha = nullptr;
+    int number = 0;
+    for (const Component component : {Component::x, Component::y}) {
+        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
+        CombCounts counts{};
+        for (int j = 0; j < extent.height; ++j) {
+            const float* const row = plane.row(j);
+            for (int i = 0; i < extent.width; ++i) {
+                if (background != nullptr && background->holds(i, j)) continue;
+                if (alpha != nullptr && alpha->at(i, j) < 1.0f) continue;
+                const float code = 255.0f * row[i], whole = std::floor(code + 0.5f);
+                if (!(code >= 0.0f && code <= 255.0f) || std::abs(code - whole) > 1e-3f) {
+                    codes_ = 0;
+                    return;
+                }
+                counts[static_cast<std::size_t>(whole)] += 1.0;
+            }
+        }
+        const CombCounts means = means_about(counts);
+        Channel& channel = channels_[static_cast<std::size_t>(number++)];
+        for (std::size_t k = kCombEnds; k + kCombEnds < counts.size(); ++k) {
+            channel.counts[k] = means[k] >= kLeastCombMean;
+            if (!channel.counts[k]) continue;
+            channel.relative[k] = std::min(counts[k] / means[k], kMostRelative);
+            ++codes_;
+        }
+    }
+}
+
+CombFit CodeComb::fit(const ToneCurve& curve) const {
+    if (codes_ == 0) return {curve};
+    constexpr double kHalf = 0.5, kCut = 1e-6;
+    return {curve, std::max(correlation(shares_of(curve, kHalf)), correlation(shares_of(curve, kCut))), codes_};
+}
+
+double CodeComb::correlation(const Counts& shares) const {
+    double product = 0.0, squares = 0.0, squares_of_shares = 0.0;
+    for (const Channel& channel : channels_) {
+        double mean = 0.0, mean_share = 0.0, n = 0.0;
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            if (!channel.counts[k]) continue;
+            mean += channel.relative[k];
+            mean_share += shares[k];
+            n += 1.0;
+        }
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            if (!channel.counts[k]) continue;
+            const double a = channel.relative[k] - mean / n, b = shares[k] - mean_share / n;
+            product += a * b;
+            squares += a * a;
+            squares_of_shares += b * b;
+        }
+    }
+    const double root = std::sqrt(squares * squares_of_shares);
+    return root > 0.0 ? product / root : 0.0;
+}
+
+CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {
+    CombFit best;
+    if (codes_ == 0) return best;
+    // There are many more numbers that are not round, so that chance finds one of them sooner.
+    const double cost = 0.5 / std::sqrt(static_cast<double>(codes_));
+    double most = -2.0;
+    for (const ToneCurve& curve : curves) {
+        const CombFit one = fit(curve);
+        const double score = one.score - cost * roundness(curve);
+        if (score <= most) continue;
+        most = score;
+        best = one;
+    }
+    return best;
+}
+
+std::vector<ToneCurve> usual_tones(const Centre& centre) {
+    std::vector<ToneCurve> curves;
+    const auto add = [&](const ToneCurve& curve) {
+        for (const double c : {centre.x, centre.y}) {
+            if (std::abs(undone(curve, c) - 0.5) > kCombMiddle) return;
+        }
+        curves.push_back(curve);
+    };
+    const auto is_identity = [](double gamma) { return std::abs(gamma - 1.0) < 0.025; };
+    for (int k = 40; k <= 250; ++k) {
+        if (!is_identity(k / 100.0)) add({0.0, 1.0, k / 100.0});
+        if (k % 5 == 0 && !is_identity(100.0 / k)) add({0.0, 1.0, 100.0 / k});
+    }
+    for (const int top : {100, 255}) {
+        for (int black = 0; black <= 2 * top / 5; ++black) {
+            for (int white = 3 * top / 5; white <= top; ++white) {
+                if ((black == 0 && white == top) || 2 * (white - black) < top) continue;
+                if (top == 255 && black % 51 == 0 && white % 51 == 0) continue;  // in percent, too
+                add({static_cast<double>(black) / top, static_cast<double>(white) / top, 1.0});
+            }
+        }
+    }
+    return curves;
+}
+
+int roundness(const ToneCurve& curve) {
+    if (curve.gamma != 1.0) {
+        const auto is_round = [&](double step) {
+            return is_multiple(curve.gamma, step) || is_multiple(1.0 / curve.gamma, step);
+        };
+        return is_round(0.1) ? 0 : is_round(0.05) ? 1 : 2;
+    }
+    const bool is_plain = curve.black == 0.0 || curve.white == 1.0 || std::abs(curve.black + curve.white - 1.0) < 1e-9;
+    const auto is_round = [&](double step) { return is_multiple(curve.black, step) && is_multiple(curve.white, step); };
+    if (is_round(0.05)) return is_plain ? 0 : 1;
+    return is_round(0.01) && is_plain ? 1 : 2;
+}
+
+}  // namespace tex::inline v1

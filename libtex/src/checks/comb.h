@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// comb.h: what a change of levels leaves in the histogram: codes that no texel has, and codes of twice as many.
+
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <tex/check.h>
+
+#include "checks/background.h"
+#include "checks/centre.h"
+#include "checks/stored.h"
+
+namespace tex::inline v1 {
+
+// 256 codes went through a curve and were rounded again, so that a code of the result stands for none, one or several of
+// them. Where the counts of neighbouring codes differ as these numbers do, the curve is known, whatever the vectors
+// look like. (Stamm, Liu: Forensic detection of image manipulation using statistical intrinsic fingerprints, 2010.)
+struct CombFit {
+    ToneCurve curve;
+    double score = 0.0;  // a correlation
+    int codes = 0;       // over so many codes of x and y
+
+    // Chance reaches 0.42 in maps of few codes, and the correlation times the root of their number 5.1.
+    [[nodiscard]] bool is_proof() const;
+};
+
+class CodeComb {
+public:
+    static constexpr int kCodes = 256;
+    using Counts = std::array<double, kCodes>;
+
+    // Counts the codes of x and y. If these are no codes of 8 bits, no curve fits.
+    CodeComb(const Stored& stored, const Background* background);
+
+    [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
+    // The best of these.
+    [[nodiscard]] CombFit best(const std::vector<ToneCurve>& curves) const;
+
+private:
+    [[nodiscard]] double correlation(const Counts& shares) const;
+
+    struct Channel {
+        std::array<double, kCodes> relative{};  // the count of a code over the mean about it
+        std::array<bool, kCodes> counts{};      // whether there are enough texels
+    };
+    std::array<Channel, 2> channels_;
+    int codes_ = 0;
+};
+
+// Curves with which people change levels, that bring both medians to the middle: gamma in hundredths and their
+// inverses; levels in percent and in codes of 8 bits.
+[[nodiscard]] std::vector<ToneCurve> usual_tones(const Centre& centre);
+
+// How round the numbers of such a curve are: 0 for gamma in tenths and for levels in steps of 5 % at one end or at both
+// alike.
+[[nodiscard]] int roundness(const ToneCurve& curve);
+
+}  // namespace tex::inline v1
