@@ -18,6 +18,7 @@ struct JudgedReport {
     std::vector<Finding> waived = {};         // by the baseline
     double seconds = 0.0;                     // that the check took
     const Plane<float>* occlusion = nullptr;  // beside the map, for its pictures; must outlive the documents
+    std::string occlusion_file = {};          // where it is from
 };
 
 // One test case for each file: a failure with the findings at or above its `fail_on`; an error if the file could not be

@@ -53,7 +53,7 @@ HWY_INLINE M is_higher(Point eye, Point near, Point far, V bend) {
 // Entry `depth` of the stacks of lines from `line` on, where that is 0 or more.
 HWY_INLINE I place_of(I depth, int line) {
     const I lane = hn::Add(hn::Iota(kDI, 0), hn::Set(kDI, line));
-    return hn::Add(hn::ShiftLeft<kBandBits + 1>(depth), hn::Add(lane, lane));
+    return hn::Add(hn::ShiftLeft<kHullBits + 1>(depth), hn::Add(lane, lane));
 }
 HWY_INLINE Point entry(const HullBand& band, I depth, int line) {
     const I at = place_of(hn::Max(depth, hn::Zero(kDI)), line);
@@ -73,29 +73,38 @@ HWY_INLINE bool none_of(const M (&masks)[kCount]) {
     return hn::AllFalse(kD, any);
 }
 
-HWY_INLINE Point point_at(const LineRow& row, int i) {
-    const V left = hn::LoadU(kD, row.heights + i), right = hn::LoadU(kD, row.heights + i + 1);
+HWY_INLINE Point point_at(const LineRow& row, int hull) {
+    V left, right;
+    hn::LoadInterleaved2(kD, row.heights + 2 * hull, left, right);
     const V height = hn::Add(left, hn::Mul(hn::Set(kD, row.fraction), hn::Sub(right, left)));
     return {height, hn::Set(kD, row.row)};
+}
+
+// The mean height of the two texels that share a hull.
+HWY_INLINE V shared_height(const TexelRow& row, int hull) {
+    V left, right;
+    hn::LoadInterleaved2(kD, row.own + 2 * hull, left, right);
+    return hn::Mul(hn::Add(left, right), hn::Set(kD, 0.5f));
 }
 
 // Vectors that are searched together, so that one waits for memory while another computes: a fifth less time than one
 // at a time; 4 gain nothing more.
 constexpr int kTogether = 2;
-static_assert(kBandLines % (kTogether * kLanes) == 0);
+static_assert(kHulls % (kTogether * kLanes) == 0);
 
-void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend) {
+void PushHighest(HullBand& band, const LineRow* rows, int row_count, const TexelRow& seen_from, float bend) {
     const V bending = hn::Set(kD, bend);
-    for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
+    for (int first = 0; first < kHulls; first += kTogether * kLanes) {
         Point point[kTogether], top[kTogether], second[kTogether];
         I count[kTogether];
         M hidden[kTogether];
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            point[v] = point_at(rows[0], i);
-            for (int k = 1; k < row_count; ++k) {
+            const Point eye{shared_height(seen_from, i), hn::Set(kD, seen_from.row)};
+            point[v] = point_at(rows[row_count - 1], i);
+            for (int k = row_count - 2; k >= 0; --k) {
                 const Point other = point_at(rows[k], i);
-                point[v] = select(hn::Ge(other.height, point[v].height), other, point[v]);
+                point[v] = select(is_higher(eye, point[v], other, bending), other, point[v]);
             }
             top[v] = {hn::Load(kD, band.top_heights + i), hn::Load(kD, band.top_rows + i)};
             second[v] = {hn::Load(kD, band.second_heights + i), hn::Load(kD, band.second_rows + i)};
@@ -128,17 +137,63 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend)
     }
 }
 
-void FindHorizons(const HullBand& band, const float* own, const NearPoint* points, int count, float row, float bend,
-                  float* horizons) {
-    const V bending = hn::Set(kD, bend);
-    for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
-        Point eye[kTogether], found[kTogether], next[kTogether];
+// A texel in the middle of those that share a hull: its height and row. A hole is no texel, so it has the height of the
+// highest.
+HWY_INLINE Point middle_of(const TexelRow* rows, int count, int hull) {
+    V highest = shared_height(rows[0], hull);
+    for (int k = 1; k < count; ++k) highest = hn::Max(highest, shared_height(rows[k], hull));
+    V sum = hn::Zero(kD);
+    float row = 0.0f;
+    for (int k = 0; k < count; ++k) {
+        const V height = shared_height(rows[k], hull);
+        sum = hn::Add(sum, hn::IfThenElse(hn::Lt(height, hn::Set(kD, 0.25f * kHoleHeight)), highest, height));
+        row += rows[k].row;
+    }
+    const float part = 1.0f / static_cast<float>(count);
+    return {hn::Mul(sum, hn::Set(kD, part)), hn::Set(kD, row * part)};
+}
+
+// Where hulls were found to be highest, and the points beside that: those of both lines of texels that share a hull.
+struct FoundPoints {
+    alignas(64) float values[6][kBandLines];
+
+    HWY_INLINE void store(Point nearer, Point found, Point farther, int hull) {
+        const V all[6] = {nearer.height, nearer.row, found.height, found.row, farther.height, farther.row};
+        for (int k = 0; k < 6; ++k) hn::StoreInterleaved2(all[k], all[k], kD, values[k] + 2 * hull);
+    }
+    [[nodiscard]] HWY_INLINE Point point(int k, int line) const {
+        return {hn::Load(kD, values[2 * k] + line), hn::Load(kD, values[2 * k + 1] + line)};
+    }
+};
+
+// What is farthest above the horizon of a texel, of three points.
+HWY_INLINE V highest_of(Point eye, Point nearer, Point found, Point farther, V bend) {
+    Point best = select(is_higher(eye, nearer, found, bend), found, nearer);
+    best = select(is_higher(eye, best, farther, bend), farther, best);
+    const V way = hn::Sub(eye.row, best.row);
+    return hn::Sub(hn::Div(hn::Sub(best.height, eye.height), way), hn::Mul(bend, way));
+}
+
+HWY_INLINE V highest_near(const TexelRow& row, V own, int i, V horizon) {
+    for (int k = 0; k < row.count; ++k) {
+        const NearPoint& point = row.points[k];
+        const V a = hn::Mul(hn::Set(kD, point.a_weight), hn::Sub(hn::LoadU(kD, point.a + i), own));
+        const V b = hn::Mul(hn::Set(kD, point.b_weight), hn::Sub(hn::LoadU(kD, point.b + i), own));
+        horizon = hn::Max(horizon, hn::Sub(hn::Add(a, b), hn::Set(kD, point.drop)));
+    }
+    return horizon;
+}
+
+HWY_INLINE void search_hulls(const HullBand& band, const TexelRow* rows, int count, V bending, FoundPoints& points) {
+    for (int first = 0; first < kHulls; first += kTogether * kLanes) {
+        Point eye[kTogether], nearer[kTogether], found[kTogether], next[kTogether];
         I depth[kTogether];
         M rises[kTogether];
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            eye[v] = {hn::LoadU(kD, own + i), hn::Set(kD, row)};
+            eye[v] = middle_of(rows, count, i);
             found[v] = {hn::Load(kD, band.top_heights + i), hn::Load(kD, band.top_rows + i)};
+            nearer[v] = found[v];
             next[v] = {hn::Load(kD, band.second_heights + i), hn::Load(kD, band.second_rows + i)};
             depth[v] = hn::Sub(hn::Load(kDI, band.counts + i), hn::Set(kDI, 1));  // of `found`
             // The slopes of a hull rise up to the horizon and fall behind it.
@@ -148,6 +203,7 @@ void FindHorizons(const HullBand& band, const float* own, const NearPoint* point
             for (int v = 0; v < kTogether; ++v) {
                 depth[v] = less_one(depth[v], rises[v]);
                 const Point behind = entry(band, hn::Sub(depth[v], hn::Set(kDI, 1)), first + v * kLanes);
+                nearer[v] = select(rises[v], found[v], nearer[v]);
                 found[v] = select(rises[v], next[v], found[v]);
                 next[v] = select(rises[v], behind, next[v]);
                 rises[v] =
@@ -155,163 +211,23 @@ void FindHorizons(const HullBand& band, const float* own, const NearPoint* point
             }
         }
         for (int v = 0; v < kTogether; ++v) {
-            const int i = first + v * kLanes;
-            const V way = hn::Sub(eye[v].row, found[v].row);
-            V horizon = hn::Sub(hn::Div(hn::Sub(found[v].height, eye[v].height), way), hn::Mul(bending, way));
-            for (int k = 0; k < count; ++k) {
-                const NearPoint& point = points[k];
-                const V a = hn::Mul(hn::Set(kD, point.a_weight), hn::Sub(hn::LoadU(kD, point.a + i), eye[v].height));
-                const V b = hn::Mul(hn::Set(kD, point.b_weight), hn::Sub(hn::LoadU(kD, point.b + i), eye[v].height));
-                horizon = hn::Max(horizon, hn::Sub(hn::Add(a, b), hn::Set(kD, point.drop)));
-            }
-            hn::StoreU(horizon, kD, horizons + i);
+            const Point farther = select(at_least(depth[v], 1), next[v], found[v]);
+            points.store(nearer[v], found[v], farther, first + v * kLanes);
         }
     }
 }
 
-// 1 / sqrt(x) within 7.5e-7 of its value: Newton's steps with factors that halve their errors (Walczyk, Moroz,
-// Cieslinski: Improving the Accuracy of the Fast Inverse Square Root by Modifying Newton-Raphson Corrections, 2021), a
-// quarter of the time of a root and a quotient. The instructions for it differ between processors.
-HWY_INLINE V inverse_root(V x) {
-    V root = hn::BitCast(kD, hn::Sub(hn::Set(kDI, 0x5f376908), hn::ShiftRight<1>(hn::BitCast(kDI, x))));
-    const V half = hn::Mul(x, hn::Set(kD, 0.5f));
-    for (const float factor : {1.50087896f, 1.50000057f})
-        root = hn::Mul(root, hn::Sub(hn::Set(kD, factor), hn::Mul(half, hn::Mul(root, root))));
-    return root;
-}
-
-// A texel in the plane of a direction: its slope, and the sine and cosine of its horizon. Its normal is (-slope, 1)
-// there, times a factor that is the same for all directions.
-struct Aspect {
-    V slope, sine, cosine;
-};
-
-HWY_INLINE Aspect aspect_of(V horizon, V p, V q, const SkyDirection& direction) {
-    const V one = hn::Set(kD, 1.0f);
-    const V slope = hn::Add(hn::Mul(p, hn::Set(kD, direction.x)), hn::Mul(q, hn::Set(kD, direction.y)));
-    // The plane of the texel itself hides what is below it.
-    const V tangent = hn::Max(horizon, slope);
-    const V cosine = inverse_root(hn::Add(one, hn::Mul(tangent, tangent)));
-    return {slope, hn::Mul(tangent, cosine), cosine};
-}
-
-// The integral of cos^2 h from the horizon to the vertical: cosine^3 g(sine) above the level, for a polynomial g that
-// was fitted at Chebyshev's points. Off by at most 3e-6.
-HWY_INLINE V squared_cosines(const Aspect& of) {
-    const V s = hn::Abs(of.sine);
-    V sum = hn::Set(kD, -0.0769763179f);
-    for (const float term :
-         {0.378519943f, -0.846462495f, 1.19290942f, -1.27133175f, 1.17095128f, -0.999673595f, 0.785395634f})
-        sum = hn::Add(hn::Mul(sum, s), hn::Set(kD, term));
-    const V above = hn::Mul(hn::Mul(hn::Mul(of.cosine, of.cosine), of.cosine), sum);
-    return hn::IfThenElse(hn::Lt(of.sine, hn::Zero(kD)), hn::Sub(hn::Set(kD, 1.57079633f), above), above);
-}
-
-// The integral of the cosine with the normal over angles h from the horizon to the vertical, times cos h, as
-// directions are denser near the level: of (-slope cos h + sin h) cos h.
-HWY_INLINE V shaded(const Aspect& of) {
-    const V upwards = hn::Mul(hn::Set(kD, 0.5f), hn::Mul(of.cosine, of.cosine));
-    return hn::Sub(upwards, hn::Mul(of.slope, squared_cosines(of)));
-}
-
-// The direction times that cosine, integrated likewise: along the level and upwards.
-struct Light {
-    V along, up;
-};
-
-HWY_INLINE Light bent(const Aspect& of) {
-    const V third = hn::Set(kD, 0.333333343f);
-    const V sine3 = hn::Mul(hn::Mul(of.sine, of.sine), of.sine);
-    const V cosine3 = hn::Mul(hn::Mul(of.cosine, of.cosine), hn::Mul(of.cosine, third));
-    const V level = hn::Add(hn::Sub(hn::Set(kD, 0.666666687f), of.sine), hn::Mul(sine3, third));
-    const V upright = hn::Mul(hn::Sub(hn::Set(kD, 1.0f), sine3), third);
-    return {hn::Sub(cosine3, hn::Mul(of.slope, level)), hn::Sub(upright, hn::Mul(of.slope, cosine3))};
-}
-
-HWY_INLINE void add(V more, float* sums) { hn::StoreU(hn::Add(hn::LoadU(kD, sums), more), kD, sums); }
-
-HWY_INLINE void add_vector(const float* horizons, const float* p, const float* q, const SkyDirection& direction,
-                           const SkyRow& sky) {
-    const V one = hn::Set(kD, 1.0f), zero = hn::Zero(kD), most = hn::Set(kD, kMaxSlope);
-    V horizon = hn::Mul(hn::LoadU(kD, horizons), hn::Set(kD, direction.for_rows));
-    horizon = hn::Min(hn::Max(horizon, direction.is_level ? zero : hn::Neg(most)), most);
-    if (sky.sky != nullptr || sky.horizon != nullptr) {
-        const V tangent = hn::Max(horizon, zero);
-        const V sine = hn::Mul(tangent, inverse_root(hn::Add(one, hn::Mul(tangent, tangent))));
-        if (sky.sky != nullptr) add(hn::Sub(one, sine), sky.sky);
-        if (sky.horizon != nullptr) hn::StoreU(hn::Min(sine, one), kD, sky.horizon);
-    }
-    if (sky.occlusion == nullptr && sky.x == nullptr) return;
-    const Aspect aspect = aspect_of(horizon, hn::LoadU(kD, p), hn::LoadU(kD, q), direction);
-    if (sky.occlusion != nullptr) add(shaded(aspect), sky.occlusion);
-    if (sky.x == nullptr) return;
-    const Light light = bent(aspect);
-    add(hn::Mul(light.along, hn::Set(kD, direction.x)), sky.x);
-    add(hn::Mul(light.along, hn::Set(kD, direction.y)), sky.y);
-    add(light.up, sky.z);
-}
-
-void AddSky(const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
-            const SkyRow& sky) {
-    const auto moved = [](auto* row, int i) { return row == nullptr ? nullptr : row + i; };
-    int i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
-        const SkyRow at{moved(sky.occlusion, i), moved(sky.sky, i), moved(sky.x, i),
-                        moved(sky.y, i),         moved(sky.z, i),   moved(sky.horizon, i)};
-        add_vector(horizons + i, moved(p, i), moved(q, i), direction, at);
-    }
-    if (i == count) return;
-    // Other threads may write what follows.
-    const int rest = count - i;
-    float in[3][kLanes] = {}, sums[6][kLanes] = {};
-    const float* const from[3] = {horizons, p, q};
-    float* const to[6] = {sky.occlusion, sky.sky, sky.x, sky.y, sky.z, sky.horizon};
-    for (int k = 0; k < 3; ++k) {
-        if (from[k] != nullptr) std::copy_n(from[k] + i, rest, in[k]);
-    }
-    const auto copy = [&](int k) { return to[k] == nullptr ? nullptr : std::copy_n(to[k] + i, rest, sums[k]) - rest; };
-    add_vector(in[0], in[1], in[2], direction, {copy(0), copy(1), copy(2), copy(3), copy(4), copy(5)});
-    for (int k = 0; k < 6; ++k) {
-        if (to[k] != nullptr) std::copy_n(sums[k], rest, to[k] + i);
-    }
-}
-
-// The z of a normal with these slopes.
-HWY_INLINE V upright(V p, V q) {
-    const V one = hn::Set(kD, 1.0f);
-    return hn::Div(one, hn::Sqrt(hn::Add(hn::Add(one, hn::Mul(p, p)), hn::Mul(q, q))));
-}
-
-void FinishSky(const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky) {
-    const V one = hn::Set(kD, 1.0f), zero = hn::Zero(kD);
-    const V number = hn::Set(kD, static_cast<float>(directions));
-    for (int i = 0; i < count; i += kLanes) {
-        const M is_hole = hn::Eq(hn::LoadU(kD, heights + i), hn::Set(kD, kHoleHeight));
-        // Comparisons, because sums of holes may be NaN.
-        const auto store = [&](V value, float* to) {
-            const V positive = hn::IfThenElseZero(hn::Gt(value, zero), value);
-            const V part = hn::IfThenElse(hn::Lt(positive, one), positive, one);
-            hn::StoreU(hn::IfThenElse(is_hole, one, part), kD, to);
-        };
-        if (sky.occlusion != nullptr) {
-            const V sum =
-                hn::Mul(hn::LoadU(kD, sky.occlusion + i), upright(hn::LoadU(kD, p + i), hn::LoadU(kD, q + i)));
-            store(hn::Div(hn::Add(sum, sum), number), sky.occlusion + i);
+void FindHorizons(const HullBand& band, const TexelRow* rows, int count, float bend) {
+    const V bending = hn::Set(kD, bend);
+    FoundPoints points;
+    search_hulls(band, rows, count, bending, points);
+    for (int i = 0; i < kBandLines; i += kLanes) {
+        const Point nearer = points.point(0, i), found = points.point(1, i), farther = points.point(2, i);
+        for (int k = 0; k < count; ++k) {
+            const Point texel{hn::LoadU(kD, rows[k].own + i), hn::Set(kD, rows[k].row)};
+            const V far = highest_of(texel, nearer, found, farther, bending);
+            hn::StoreU(highest_near(rows[k], texel.height, i, far), kD, rows[k].horizons + i);
         }
-        if (sky.sky != nullptr) store(hn::Div(hn::LoadU(kD, sky.sky + i), number), sky.sky + i);
-        if (sky.horizon != nullptr)
-            hn::StoreU(hn::IfThenZeroElse(is_hole, hn::LoadU(kD, sky.horizon + i)), kD, sky.horizon + i);
-        if (sky.x == nullptr) continue;  // there may be no slopes
-        const V slope_x = hn::LoadU(kD, p + i), slope_y = hn::LoadU(kD, q + i);
-        const V scale = hn::Div(upright(slope_x, slope_y), number);
-        Vec3 sum = LoadVec3(kD, sky.x + i, sky.y + i, sky.z + i);
-        sum = {hn::Mul(sum.x, scale), hn::Mul(sum.y, scale), hn::Mul(sum.z, scale)};
-        const M is_closed = hn::Lt(SquaredLength(sum), hn::Set(kD, 1e-10f));
-        const Vec3 normal = {hn::Neg(slope_x), hn::Neg(slope_y), one};
-        const auto either = [&](V closed, V open) { return hn::IfThenElse(is_closed, closed, open); };
-        // Lengths are above 1e-6: no slope is too steep for its square.
-        const Vec3 vector = {either(normal.x, sum.x), either(normal.y, sum.y), either(normal.z, sum.z)};
-        StoreVec3(kD, FlatUnless(kD, hn::Not(is_hole), Normalise(kD, vector)), sky.x + i, sky.y + i, sky.z + i);
     }
 }
 
@@ -339,24 +255,16 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 void clear_hulls(HullBand& band) {
-    std::fill_n(band.counts, kBandLines, 0);
-    for (float* const values : {band.top_heights, band.second_heights}) std::fill_n(values, kBandLines, kHoleHeight);
-    for (float* const values : {band.top_rows, band.second_rows}) std::fill_n(values, kBandLines, 0.0f);
+    std::fill_n(band.counts, kHulls, 0);
+    for (float* const values : {band.top_heights, band.second_heights}) std::fill_n(values, kHulls, kHoleHeight);
+    for (float* const values : {band.top_rows, band.second_rows}) std::fill_n(values, kHulls, 0.0f);
 }
 
-TEX_KERNEL(void, push_highest, PushHighest, (HullBand & band, const LineRow* rows, int count, float bend),
+TEX_KERNEL(void, push_highest, PushHighest,
+           (HullBand & band, const LineRow* rows, int count, const TexelRow& seen_from, float bend),
+           (band, rows, count, seen_from, bend))
+TEX_KERNEL(void, find_horizons, FindHorizons, (const HullBand& band, const TexelRow* rows, int count, float bend),
            (band, rows, count, bend))
-TEX_KERNEL(void, find_horizons, FindHorizons,
-           (const HullBand& band, const float* own, const NearPoint* points, int count, float row, float bend,
-            float* horizons),
-           (band, own, points, count, row, bend, horizons))
-TEX_KERNEL(void, add_sky, AddSky,
-           (const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
-            const SkyRow& sky),
-           (horizons, p, q, direction, count, sky))
-TEX_KERNEL(void, finish_sky, FinishSky,
-           (const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky),
-           (heights, p, q, directions, count, sky))
 TEX_KERNEL(ScaledHeights, scale_heights, ScaleHeights, (const float* in, float scale, int count, float* out),
            (in, scale, count, out))
 }  // namespace tex::inline v1
