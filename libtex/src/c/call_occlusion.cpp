@@ -54,7 +54,7 @@ std::size_t occlusion_scratch(std::int64_t width, std::int64_t height, const Wan
     ScratchSize size;
     for (int k = 0; k < 1 + 3 + sums + 3; ++k) size.plane(whole(width), whole(height));
     if (o.horizons > 0) size.plane(width, height * o.horizons);
-    size.plane(2 * kHulls, (longer + run_in) / 2 + 40);
+    size.plane(2 * kBandLines, (longer + run_in) / 2 + 40);
     size.plane(kBandLines, longer);
     size.vector<int>(longer + 2 * run_in + 16);
     size.vector<Plane<float>>(2 * (3 + sums));

@@ -53,7 +53,7 @@ HWY_INLINE M is_higher(Point eye, Point near, Point far, V bend) {
 // Entry `depth` of the stacks of lines from `line` on, where that is 0 or more.
 HWY_INLINE I place_of(I depth, int line) {
     const I lane = hn::Add(hn::Iota(kDI, 0), hn::Set(kDI, line));
-    return hn::Add(hn::ShiftLeft<kHullBits + 1>(depth), hn::Add(lane, lane));
+    return hn::Add(hn::ShiftLeft<kBandBits + 1>(depth), hn::Add(lane, lane));
 }
 HWY_INLINE Point entry(const HullBand& band, I depth, int line) {
     const I at = place_of(hn::Max(depth, hn::Zero(kDI)), line);
@@ -73,34 +73,26 @@ HWY_INLINE bool none_of(const M (&masks)[kCount]) {
     return hn::AllFalse(kD, any);
 }
 
-HWY_INLINE Point point_at(const LineRow& row, int hull) {
-    V left, right;
-    hn::LoadInterleaved2(kD, row.heights + 2 * hull, left, right);
+HWY_INLINE Point point_at(const LineRow& row, int i) {
+    const V left = hn::LoadU(kD, row.heights + i), right = hn::LoadU(kD, row.heights + i + 1);
     const V height = hn::Add(left, hn::Mul(hn::Set(kD, row.fraction), hn::Sub(right, left)));
     return {height, hn::Set(kD, row.row)};
-}
-
-// The mean height of the two texels that share a hull.
-HWY_INLINE V shared_height(const TexelRow& row, int hull) {
-    V left, right;
-    hn::LoadInterleaved2(kD, row.own + 2 * hull, left, right);
-    return hn::Mul(hn::Add(left, right), hn::Set(kD, 0.5f));
 }
 
 // Vectors that are searched together, so that one waits for memory while another computes: a fifth less time than one
 // at a time; 4 gain nothing more.
 constexpr int kTogether = 2;
-static_assert(kHulls % (kTogether * kLanes) == 0);
+static_assert(kBandLines % (kTogether * kLanes) == 0);
 
 void PushHighest(HullBand& band, const LineRow* rows, int row_count, const TexelRow& seen_from, float bend) {
     const V bending = hn::Set(kD, bend);
-    for (int first = 0; first < kHulls; first += kTogether * kLanes) {
+    for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
         Point point[kTogether], top[kTogether], second[kTogether];
         I count[kTogether];
         M hidden[kTogether];
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            const Point eye{shared_height(seen_from, i), hn::Set(kD, seen_from.row)};
+            const Point eye{hn::LoadU(kD, seen_from.own + i), hn::Set(kD, seen_from.line.row)};
             point[v] = point_at(rows[row_count - 1], i);
             for (int k = row_count - 2; k >= 0; --k) {
                 const Point other = point_at(rows[k], i);
@@ -137,34 +129,21 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, const Texel
     }
 }
 
-// A texel in the middle of those that share a hull: its height and row. A hole is no texel, so it has the height of the
+// A texel of a line in the middle of the rows: its height and row. A hole is no texel, so it has the height of the
 // highest.
-HWY_INLINE Point middle_of(const TexelRow* rows, int count, int hull) {
-    V highest = shared_height(rows[0], hull);
-    for (int k = 1; k < count; ++k) highest = hn::Max(highest, shared_height(rows[k], hull));
+HWY_INLINE Point middle_of(const TexelRow* rows, int count, int i) {
+    V highest = hn::LoadU(kD, rows[0].own + i);
+    for (int k = 1; k < count; ++k) highest = hn::Max(highest, hn::LoadU(kD, rows[k].own + i));
     V sum = hn::Zero(kD);
     float row = 0.0f;
     for (int k = 0; k < count; ++k) {
-        const V height = shared_height(rows[k], hull);
-        sum = hn::Add(sum, hn::IfThenElse(hn::Lt(height, hn::Set(kD, 0.25f * kHoleHeight)), highest, height));
-        row += rows[k].row;
+        const V own = hn::LoadU(kD, rows[k].own + i);
+        sum = hn::Add(sum, hn::IfThenElse(hn::Eq(own, hn::Set(kD, kHoleHeight)), highest, own));
+        row += rows[k].line.row;
     }
     const float part = 1.0f / static_cast<float>(count);
     return {hn::Mul(sum, hn::Set(kD, part)), hn::Set(kD, row * part)};
 }
-
-// Where hulls were found to be highest, and the points beside that: those of both lines of texels that share a hull.
-struct FoundPoints {
-    alignas(64) float values[6][kBandLines];
-
-    HWY_INLINE void store(Point nearer, Point found, Point farther, int hull) {
-        const V all[6] = {nearer.height, nearer.row, found.height, found.row, farther.height, farther.row};
-        for (int k = 0; k < 6; ++k) hn::StoreInterleaved2(all[k], all[k], kD, values[k] + 2 * hull);
-    }
-    [[nodiscard]] HWY_INLINE Point point(int k, int line) const {
-        return {hn::Load(kD, values[2 * k] + line), hn::Load(kD, values[2 * k + 1] + line)};
-    }
-};
 
 // What is farthest above the horizon of a texel, of three points.
 HWY_INLINE V highest_of(Point eye, Point nearer, Point found, Point farther, V bend) {
@@ -184,8 +163,9 @@ HWY_INLINE V highest_near(const TexelRow& row, V own, int i, V horizon) {
     return horizon;
 }
 
-HWY_INLINE void search_hulls(const HullBand& band, const TexelRow* rows, int count, V bending, FoundPoints& points) {
-    for (int first = 0; first < kHulls; first += kTogether * kLanes) {
+void FindHorizons(const HullBand& band, const TexelRow* rows, int count, float bend) {
+    const V bending = hn::Set(kD, bend);
+    for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
         Point eye[kTogether], nearer[kTogether], found[kTogether], next[kTogether];
         I depth[kTogether];
         M rises[kTogether];
@@ -211,22 +191,16 @@ HWY_INLINE void search_hulls(const HullBand& band, const TexelRow* rows, int cou
             }
         }
         for (int v = 0; v < kTogether; ++v) {
+            const int i = first + v * kLanes;
             const Point farther = select(at_least(depth[v], 1), next[v], found[v]);
-            points.store(nearer[v], found[v], farther, first + v * kLanes);
-        }
-    }
-}
-
-void FindHorizons(const HullBand& band, const TexelRow* rows, int count, float bend) {
-    const V bending = hn::Set(kD, bend);
-    FoundPoints points;
-    search_hulls(band, rows, count, bending, points);
-    for (int i = 0; i < kBandLines; i += kLanes) {
-        const Point nearer = points.point(0, i), found = points.point(1, i), farther = points.point(2, i);
-        for (int k = 0; k < count; ++k) {
-            const Point texel{hn::LoadU(kD, rows[k].own + i), hn::Set(kD, rows[k].row)};
-            const V far = highest_of(texel, nearer, found, farther, bending);
-            hn::StoreU(highest_near(rows[k], texel.height, i, far), kD, rows[k].horizons + i);
+            for (int k = 0; k < count; ++k) {
+                const V own = hn::LoadU(kD, rows[k].own + i);
+                // A line that lies up to half a texel beside a valley is higher than the valley, far away and here.
+                Point eye_on_line = point_at(rows[k].line, i);
+                eye_on_line.height = hn::Max(eye_on_line.height, own);
+                const V far = highest_of(eye_on_line, nearer[v], found[v], farther, bending);
+                hn::StoreU(highest_near(rows[k], own, i, far), kD, rows[k].horizons + i);
+            }
         }
     }
 }
@@ -255,9 +229,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tex::inline v1 {
 void clear_hulls(HullBand& band) {
-    std::fill_n(band.counts, kHulls, 0);
-    for (float* const values : {band.top_heights, band.second_heights}) std::fill_n(values, kHulls, kHoleHeight);
-    for (float* const values : {band.top_rows, band.second_rows}) std::fill_n(values, kHulls, 0.0f);
+    std::fill_n(band.counts, kBandLines, 0);
+    for (float* const values : {band.top_heights, band.second_heights}) std::fill_n(values, kBandLines, kHoleHeight);
+    for (float* const values : {band.top_rows, band.second_rows}) std::fill_n(values, kBandLines, 0.0f);
 }
 
 TEX_KERNEL(void, push_highest, PushHighest,

@@ -2,8 +2,7 @@
 // kernels/horizon.h: the horizons of a band of lines side by side.
 //
 // A sweep goes from row to row; a line is one lane. What lies behind the sweep on a line is its upper convex hull, a
-// stack from the farthest point to the nearest. Two lines of texels that lie side by side share the hull of the line
-// between them. Horizons are rises for each row of distance.
+// stack from the farthest point to the nearest. Horizons are rises for each row of distance.
 //
 // A point n rows away whose rise is r counts as r / n - bend n.
 
@@ -13,31 +12,30 @@
 
 namespace tex::inline v1 {
 
-// 256 lines: with 128, a texel takes a fifth more time; with 512, less of it at 4096x4096 alone.
-inline constexpr int kHullBits = 7;
-inline constexpr int kHulls = 1 << kHullBits;
-inline constexpr int kBandLines = 2 * kHulls;
+// With half as many lines, a texel of 4096x4096 takes a fifth longer.
+inline constexpr int kBandBits = 8;
+inline constexpr int kBandLines = 1 << kBandBits;
 
 // The height of a hole: so low that nothing beside it can see it. Heights are at most kMaxSlope.
 inline constexpr float kHoleHeight = -1e30f;
 
-// The hulls of a band; hull i lies between lines 2 i and 2 i + 1. Entry k of its stack, height and row, is at
-// [2 (kHulls k + i)]; the two nearest points of each hull are also in `top` and `second`.
+// The hulls of a band. Entry k of line i of the stacks, height and row, is at [2 (kBandLines k + i)]; the two nearest
+// points of each hull are also in `top` and `second`.
 struct HullBand {
     float* points;  // stacks, with room for as many points as are pushed
-    alignas(64) std::int32_t counts[kHulls];
-    alignas(64) float top_heights[kHulls];
-    alignas(64) float top_rows[kHulls];
-    alignas(64) float second_heights[kHulls];
-    alignas(64) float second_rows[kHulls];
+    alignas(64) std::int32_t counts[kBandLines];
+    alignas(64) float top_heights[kBandLines];
+    alignas(64) float top_rows[kBandLines];
+    alignas(64) float second_heights[kBandLines];
+    alignas(64) float second_rows[kBandLines];
 };
 
 // Empties the hulls.
 void clear_hulls(HullBand& band);
 
-// A row of heights: hull i has the height heights[2 i] + fraction (heights[2 i + 1] - heights[2 i]).
+// A row of heights: line i has the height heights[i] + fraction (heights[i + 1] - heights[i]).
 struct LineRow {
-    const float* heights;  // kBandLines of them
+    const float* heights;  // kBandLines + 1 of them
     float fraction;
     float row;
 };
@@ -50,12 +48,15 @@ struct NearPoint {
 };
 inline constexpr int kMostNearPoints = 11;
 
-// Texels of a row: their heights, the points near them, and where their horizons go.
+// Rows whose horizons are found together, at most.
+inline constexpr int kMostRows = 4;
+
+// Texels of a row: their heights, the lines beside them, the points near them, and where their horizons go.
 struct TexelRow {
     const float* own;
+    LineRow line;
     const NearPoint* points;
     int count;
-    float row;
     float* horizons;
 };
 
@@ -63,9 +64,9 @@ struct TexelRow {
 // comes soon after them. The rows follow one another and lie before all others.
 void push_highest(HullBand& band, const LineRow* rows, int count, const TexelRow& seen_from, float bend);
 
-// The horizons of rows that follow one another: the greatest of what the points near a texel and its hull give. A hull
-// is searched once, for a texel in the middle, and each texel takes the best of the point that is found and of those
-// beside it. No hull may be empty.
+// The horizons of rows that follow one another: the greatest of what the points near a texel and the hull of its line
+// give. A hull is searched once, for a texel in the middle, and each texel takes the best of the point that is found
+// and of those beside it. No hull may be empty.
 void find_horizons(const HullBand& band, const TexelRow* rows, int count, float bend);
 
 // What scale_heights() met.

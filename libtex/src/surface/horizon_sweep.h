@@ -2,8 +2,8 @@
 // horizon_sweep.h: the horizons of a field of heights in one direction, or in two that are opposite, from row to row.
 //
 // A direction nearer to x than to y takes a field that is turned over its diagonal, with columns for rows: so each of
-// its lines crosses every row. Line j is at column j + slant r in row r, between two texels. Each texel takes the hull
-// that is nearest to its middle, and what is nearer than kNearRows from texels themselves.
+// its lines crosses every row. Line j is at column j + slant r in row r, between two texels. Each texel takes the
+// hull of the line that is nearest to its middle, and what is nearer than kNearRows from texels themselves.
 //
 // Opposite directions have the same lines. The horizons of the first one of a band are kept until those of the second
 // are there, too, and both are added at once: slopes and sums lie far apart in memory.
