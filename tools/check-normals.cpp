@@ -174,8 +174,9 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
         totals_.add(report, known);
         totals_.fails = totals_.fails || fails;
     }
-    const cli::JudgedReport judged{std::move(report), require, demands.fail_on,
-                                   std::move(waived), seconds, demands.checks.occlusion};
+    const cli::JudgedReport judged{std::move(report),      require, demands.fail_on,
+                                   std::move(waived),      seconds, demands.checks.occlusion,
+                                   rules_.occlusion_file()};
     if (auto added = documents_.add(job, judged, mesh, read); !added) return added.error();
     return json;
 }

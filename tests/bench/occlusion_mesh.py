@@ -62,27 +62,33 @@ def floats(name: str) -> array.array:
         return array.array("f", file.read())
 
 
+def both(build: str, height) -> tuple[array.array, array.array]:
+    """Occlusion of the field `height` from horizons and from rays; writes files into the current folder."""
+    heights = [height(i, j) for j in range(SIDE) for i in range(SIDE)]
+    with open("h.r32", "wb") as file:
+        array.array("f", heights).tofile(file)
+    write_meshes(heights)
+    run(build, "bake-normals", "h.r32", "-o", "n.png", "--bumpiness", "1", "--wrap", "clamp",
+        "--occlusion-out", "horizons.r32", "--occlusion-directions", "64")
+    run(build, "transfer-normals", "low.obj", "high.obj", "-o", "t.png", "--extent", str(SIDE), "--front", "20",
+        "--back", "20", "--rays-per-hit", "4096", "--occlusion-out", "rays.r32")
+    return floats("horizons.r32"), floats("rays.r32")
+
+
 def main() -> None:
     build = os.path.abspath(sys.argv[1])
     print("| heights | mean difference | signed | p99 | mean occlusion |\n|---|---|---|---|---|")
     for name, height in FIELDS.items():
         with tempfile.TemporaryDirectory() as folder:
             os.chdir(folder)
-            heights = [height(i, j) for j in range(SIDE) for i in range(SIDE)]
-            with open("h.r32", "wb") as file:
-                array.array("f", heights).tofile(file)
-            write_meshes(heights)
-            run(build, "bake-normals", "h.r32", "-o", "n.png", "--bumpiness", "1", "--wrap", "clamp",
-                "--occlusion-out", "horizons.r32", "--occlusion-directions", "64")
-            run(build, "transfer-normals", "low.obj", "high.obj", "-o", "t.png", "--extent", str(SIDE), "--front", "20",
-                "--back", "20", "--rays-per-hit", "4096", "--occlusion-out", "rays.r32")
-            a, b = floats("horizons.r32"), floats("rays.r32")
-            inside = range(MARGIN, SIDE - MARGIN)
-            gaps = sorted(abs(a[j * SIDE + i] - b[j * SIDE + i]) for j in inside for i in inside)
-            signed = sum(a[j * SIDE + i] - b[j * SIDE + i] for j in inside for i in inside) / len(gaps)
-            mean = sum(a[j * SIDE + i] for j in inside for i in inside) / len(gaps)
-            print(f"| {name} | {sum(gaps) / len(gaps):.4f} | {signed:.4f} | {gaps[len(gaps) * 99 // 100]:.4f} | {mean:.3f} |")
+            a, b = both(build, height)
             os.chdir("/")
+        inside = range(MARGIN, SIDE - MARGIN)
+        gaps = sorted(abs(a[j * SIDE + i] - b[j * SIDE + i]) for j in inside for i in inside)
+        signed = sum(a[j * SIDE + i] - b[j * SIDE + i] for j in inside for i in inside) / len(gaps)
+        mean = sum(a[j * SIDE + i] for j in inside for i in inside) / len(gaps)
+        print(f"| {name} | {sum(gaps) / len(gaps):.4f} | {signed:.4f} | {gaps[len(gaps) * 99 // 100]:.4f} | {mean:.3f} |")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -44,6 +44,38 @@ TEST_F(ReportPage, LightsMapsAsPreviewNormalsDoes) {
     }
 }
 
+// Occlusion of another size than the map: it darkens the ambient light, whatever the light that moves.
+TEST_F(ReportPage, MovesTheLightOverOcclusion) {
+    shell(
+        "bake-normals bricks.png -o map.png --bumpiness 12 --occlusion-out full.png;"
+        "preview-normals map.png -o half.png --size 128 --occlusion full.png --ambient 1 --tint 1 --light-color 0;"
+        "check-normals map.png --occlusion full.png --report page.html;"
+        "check-normals map.png --occlusion half.png --report half.html; check-normals map.png --report without.html");
+    const auto show = [&](const std::string& what) {
+        js("(() => { const s = document.querySelector('.stage select[name=show]'); s.value = '" + what +
+           "'; s.dispatchEvent(new Event('change')); })()");
+        settle();
+    };
+    for (const char* page : {"page.html", "half.html"}) {
+        open(page);
+        wait_for_light();
+        show("occluded");
+        expect_picture_of_command(page);
+        EXPECT_NE(text(".stage .command").find("--ambient 0.6 --occlusion "), std::string::npos);
+        Extent extent;
+        const std::vector<int> before = canvas(extent);
+        point_at(0.71, 0.23);
+        expect_picture_of_command(page);
+        EXPECT_NE(canvas(extent), before);
+        show("lit");
+        expect_picture_of_command(page);
+        EXPECT_EQ(text(".stage .command").find("--occlusion"), std::string::npos);
+    }
+    open("without.html");
+    wait_for_light();
+    EXPECT_EQ(text(".stage select[name=show]").find("occlusion"), std::string::npos);
+}
+
 TEST_F(ReportPage, ObeysTheKeyboard) {
     shell("bake-normals bricks.png -o map.png --bumpiness 6; check-normals map.png --report page.html");
     open("page.html");

@@ -111,8 +111,9 @@ Result<void> CheckDocuments::add_to_page(Job& job, const JudgedReport& judged, c
     if (!report.error) {
         const auto texture = read();
         if (!texture) return texture.error();
+        const MapOcclusion occlusion{judged.occlusion, judged.occlusion_file};
         auto drawn = draw_html_map(title_of(report), *texture, report.swizzle, report.y.y.value_or(texture->y_axis),
-                                   mesh, sizes_, job.until(1.0), judged.occlusion);
+                                   mesh, sizes_, job.until(1.0), judged.occlusion != nullptr ? &occlusion : nullptr);
         // A file that holds no normals has findings, and no pictures.
         if (drawn)
             map = std::move(*drawn);

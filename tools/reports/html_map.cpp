@@ -115,12 +115,23 @@ Result<void> add_mesh(const Drawing& from) {
     return {};
 }
 
+// Occlusion as a page has it: what a white plane without any other light shows of it, which has a size of its own.
+Result<std::vector<std::byte>> occlusion_picture(const Drawing& from, const PreviewScene& scene) {
+    PreviewOptions options;
+    options.size = {std::min(kLargestHtmlLevel, longest(scene.occlusion->extent())), 0};
+    options.ambient = options.material.albedo = {1.0f, 1.0f, 1.0f};
+    options.light.color = {};
+    const auto picture = preview(scene, options, from.execution);
+    if (!picture) return picture.error();
+    return encode_picture(*picture);
+}
+
 // Occlusion darkens ambient light alone, of which there is more here than in the other pictures.
-Result<void> add_occluded(const Drawing& from, const Plane<float>& occlusion) {
+Result<void> add_occluded(const Drawing& from, const MapOcclusion& occlusion) {
     PreviewScene scene;
     scene.map = &from.map.chain;
     scene.map_without_z = from.map.without_z();
-    scene.occlusion = &occlusion;
+    scene.occlusion = occlusion.plane;
     PreviewOptions options;
     options.size = {from.sizes.view, 0};
     options.ambient = {0.6f, 0.6f, 0.6f};
@@ -129,6 +140,10 @@ Result<void> add_occluded(const Drawing& from, const Plane<float>& occlusion) {
     auto drawn = html_picture(*picture, "with occlusion", "the map in much ambient light, which its occlusion darkens");
     if (!drawn) return drawn.error();
     from.map.views.push_back(std::move(*drawn));
+    auto png = occlusion_picture(from, scene);
+    if (!png) return png.error();
+    from.map.occlusion = std::move(*png);
+    from.map.occlusion_file = occlusion.file;
     return {};
 }
 
@@ -221,7 +236,7 @@ void HtmlMap::limit(int side) {
 }
 
 std::size_t HtmlMap::picture_size() const {
-    std::size_t sum = base64_size(thumbnail.png.size()) + base64_size(lit.png.size());
+    std::size_t sum = base64_size(thumbnail.png.size()) + base64_size(lit.png.size()) + base64_size(occlusion.size());
     for (const HtmlPicture& view : views) sum += base64_size(view.png.size());
     if (on_mesh) sum += base64_size(on_mesh->still.png.size());
     if (beside) sum += base64_size(beside->still.png.size()) + base64_size(beside->missed.size());
@@ -239,6 +254,7 @@ Json HtmlMap::json() const {
     json["packed"] = !packed.levels.empty();
     json["channels"] = {channel_of(swizzle, Component::x), channel_of(swizzle, Component::y),
                         channel_of(swizzle, Component::z)};
+    if (!occlusion.empty()) json["occlusion"] = occlusion_file;
     json["first"] = levels.first;
     json["levels"] = Json::array();
     for (const HtmlLevels::One& level : levels.levels) {
@@ -255,7 +271,7 @@ Result<HtmlPicture> html_picture(const Texture& picture, std::string caption, st
 
 Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle, YAxis y,
                               const MapOnMesh* mesh, const HtmlSizes& sizes, const Execution& execution,
-                              const Plane<float>* occlusion) {
+                              const MapOcclusion* occlusion) {
     HtmlMap map;
     map.file = file;
     map.format = texture.format;

@@ -83,8 +83,10 @@ struct HtmlMap {
     std::vector<HtmlPicture> views;
     std::optional<HtmlOnMesh> on_mesh;
     std::optional<HtmlBeside> beside;
-    HtmlLevels packed;   // for block formats
-    HtmlLevels decoded;  // for other formats, and if the packed levels end before they are small
+    std::vector<std::byte> occlusion;  // a grey PNG for the light that can be moved; empty: there is none
+    std::string occlusion_file;        // for preview-normals
+    HtmlLevels packed;                 // for block formats
+    HtmlLevels decoded;                // for other formats, and if the packed levels end before they are small
 
     [[nodiscard]] bool without_z() const;
 
@@ -112,10 +114,16 @@ struct MapOnMesh {
     std::string map;
 };
 
+// The occlusion of a map.
+struct MapOcclusion {
+    const Plane<float>* plane;
+    std::string file;  // where it is from
+};
+
 // Draws a texture whose channels have the meaning that `swizzle` gives, with green as `y` says; also on its mesh,
 // unless that is null, and under ambient light with its occlusion, unless that is null. Errors: those of the verbs.
 [[nodiscard]] Result<HtmlMap> draw_html_map(const std::string& file, const Texture& texture, const Swizzle& swizzle,
                                             YAxis y, const MapOnMesh* mesh, const HtmlSizes& sizes,
-                                            const Execution& execution, const Plane<float>* occlusion = nullptr);
+                                            const Execution& execution, const MapOcclusion* occlusion = nullptr);
 
 }  // namespace tex::cli

@@ -286,6 +286,9 @@ std::string HtmlReport::data() const {
             if (map.beside && !map.beside->missed.empty())
                 bytes += fmt::format("<script type=\"text/plain\" id=\"missed-{}\">{}</script>\n", maps.size(),
                                      base64(map.beside->missed));
+            if (!map.occlusion.empty())
+                bytes += fmt::format("<script type=\"text/plain\" id=\"occlusion-{}\">{}</script>\n", maps.size(),
+                                     base64(map.occlusion));
             maps.push_back(map.json());
         }
     }

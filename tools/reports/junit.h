@@ -18,6 +18,7 @@ struct JudgedReport {
     std::vector<Finding> waived = {};         // by the baseline
     double seconds = 0.0;                     // that the check took
     const Plane<float>* occlusion = nullptr;  // beside the map, for its pictures; must outlive the documents
+    std::string occlusion_file = {};          // where it is from
 
     // The file could not be read, and the baseline does not know its damage.
     [[nodiscard]] bool is_unreadable() const { return report.error && waived.empty(); }

@@ -24,8 +24,8 @@ vec3 displayed(vec3 c) {
   c = clamp(c, 0.0, 1.0);
   return mix(1.055 * pow(max(c, 1e-9), vec3(1.0 / 2.4)) - 0.055, 12.92 * c, lessThanEqual(c, vec3(0.0031308)));
 }
-vec3 linearLight(vec3 n, vec3 point) {
-  const float albedo = 0.6, specular = 0.25, shininess = 20.0, ambient = 0.03;
+vec3 linearLight(vec3 n, vec3 point, float ambient) {
+  const float albedo = 0.6, specular = 0.25, shininess = 20.0;
   vec3 view = normalize(eye - point);
   vec3 way = isPoint ? light - point : light;
   float weakens = isPoint ? 1.0 / max(length(way), 1e-6) : 1.0;
@@ -36,6 +36,8 @@ vec3 linearLight(vec3 n, vec3 point) {
 }
 `;
 
+const kAmbient = 0.03, kMuchAmbient = 0.6;  // the second one to show occlusion by
+
 // A triangle that covers the whole picture.
 const kPictureShader = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
@@ -43,7 +45,7 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2
 const kPlaneEye = [0, 0, 3.7320508075688776];
 
 const kPlaneShader = kShading + `
-uniform sampler2D textureA, textureB;
+uniform sampler2D textureA, textureB, occlusionA, occlusionB;
 uniform Map a, b;
 uniform vec2 size, tiles;   // of the canvas in pixels; how often the map stands on the plane
 uniform float aspect, edge, bump;   // edge: where B begins, in pixels
@@ -63,7 +65,7 @@ vec3 diverging(float t) {
   c = mix(c, vec3(0.94, 0.64, 0.34), clamp(place - 2.0, 0.0, 1.0));
   return mix(c, vec3(0.48, 0.19, 0.02), clamp(place - 3.0, 0.0, 1.0));
 }
-vec3 shown(Map map, vec4 texel, vec3 point) {
+vec3 shown(Map map, vec4 texel, float open, vec3 point) {
   vec3 stored = read(map, texel);
   vec3 n = normalOf(map, stored);
   if (show == 4) return diverging((map.hasZ ? length(stored) - 1.0 : 0.0) / 0.1);
@@ -72,14 +74,15 @@ vec3 shown(Map map, vec4 texel, vec3 point) {
   if (show == 1) return (n + 1.0) / 2.0;
   if (show == 2) return viridis(length(n.xy) / max(n.z, 1.0 / 256.0) / 2.0);
   if (show == 3) return viridis(degrees(atan(length(n.xy), n.z)) / 90.0);
-  return displayed(linearLight(n, point));
+  return displayed(linearLight(n, point, show == 6 ? ${kMuchAmbient.toFixed(2)} * open : ${kAmbient.toFixed(2)}));
 }
 void main() {
   vec2 place = gl_FragCoord.xy / size;
   vec2 uv = vec2(place.x, 1.0 - place.y) * tiles;
   vec3 point = vec3((2.0 * place - 1.0) * vec2(aspect, 1.0), 0.0);
   vec4 texelA = texture(textureA, uv), texelB = texture(textureB, uv);
-  color = vec4(gl_FragCoord.x < edge ? shown(a, texelA, point) : shown(b, texelB, point), 1.0);
+  float openA = texture(occlusionA, uv).r, openB = texture(occlusionB, uv).r;
+  color = vec4(gl_FragCoord.x < edge ? shown(a, texelA, openA, point) : shown(b, texelB, openB, point), 1.0);
 }`;
 
 // The bytes of an element: #map-n, #mesh-n.
@@ -129,6 +132,7 @@ class Lighting {
     this.s3tc = gl.getExtension("WEBGL_compressed_texture_s3tc");
     this.rgtc = gl.getExtension("EXT_texture_compression_rgtc");
     this.textures = new Map();
+    this.occlusions = new Map();
     this.plane = new Program(gl, kPictureShader, kPlaneShader);
   }
 
@@ -179,6 +183,24 @@ class Lighting {
     return {id, packed: Boolean(packed), signed: Boolean(packed) && map.format === "bc5-snorm"};
   }
 
+  // A promise of the occlusion of map `number`, open if it has none. The GPU decodes it, and makes levels of the mean.
+  occlusion(number) {
+    if (!this.occlusions.has(number)) this.occlusions.set(number, this.loadOcclusion(number));
+    return this.occlusions.get(number);
+  }
+
+  async loadOcclusion(number) {
+    const gl = this.gl;
+    const picture = "occlusion" in this.maps[number] ? await createImageBitmap(new Blob([bytesOf("occlusion-" + number)], {type: "image/png"}))
+      : new ImageData(new Uint8ClampedArray([255, 255, 255, 255]), 1, 1);
+    const id = gl.createTexture();
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, id);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.SRGB8_ALPHA8, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+    gl.generateMipmap(gl.TEXTURE_2D);
+    return id;
+  }
+
   // Prepares a program, which is in use, to read map `number` as `name`: "a" or "b".
   setMap(program, name, unit, number, texture, y) {
     const gl = this.gl, map = this.maps[number];
@@ -217,10 +239,16 @@ class Lighting {
   async draw(canvas, scene) {
     const textureA = await this.texture(scene.a);
     const textureB = scene.b === null ? textureA : await this.texture(scene.b);
+    const open = [await this.occlusion(scene.a), await this.occlusion(scene.b === null ? scene.a : scene.b)];
     const gl = this.gl, program = this.plane, {width, height} = canvas, [w, h] = this.maps[scene.a].levels[0];
     this.begin(canvas, program);
     this.setMap(program, "a", 0, scene.a, textureA, scene.yA);
     this.setMap(program, "b", 1, scene.b === null ? scene.a : scene.b, textureB, scene.b === null ? scene.yA : scene.yB);
+    open.forEach((texture, k) => {
+      gl.activeTexture(gl.TEXTURE2 + k);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.uniform1i(program.uniform(k === 0 ? "occlusionA" : "occlusionB"), 2 + k);
+    });
     this.setLight(program, scene.light, scene.point, kPlaneEye);
     gl.uniform2f(program.uniform("size"), width, height);
     gl.uniform2f(program.uniform("tiles"), scene.tiles, scene.tiles);

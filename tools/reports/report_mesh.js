@@ -63,7 +63,7 @@ void main() {
   vec3 t = tangentAcross, across = normalAcross;
   vec3 b = kind == 1 ? (sign < 0.0 ? -1.0 : 1.0) * cross(across, t) : binormalAcross;
   if (kind == 2) { t = unitOrSame(t); b = unitOrSame(b); across = unitOrSame(across); }
-  vec3 lit = linearLight(unitOf(n.x * t + n.y * b + n.z * across), point);
+  vec3 lit = linearLight(unitOf(n.x * t + n.y * b + n.z * across), point, ${kAmbient.toFixed(2)});
   bool isMissed = showsMissed && texture(missed, uv).r > 0.5;
   color = vec4(isMissed ? vec3(0.6, 0.02, 0.02) * (0.3 + dot(lit, vec3(0.4))) : lit, 1.0);
 }`;

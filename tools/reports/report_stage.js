@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stage: the canvas with a light that replaces a still picture, its controls and its keys.
 
-const kShows = [["lit", "lit"], ["normals", "normals"], ["slope", "slope"], ["tilt", "tilt"], ["length", "length"], ["z-error", "z error"]];
+const kShows = [["lit", "lit"], ["normals", "normals"], ["slope", "slope"], ["tilt", "tilt"], ["length", "length"], ["z-error", "z error"],
+  ["occluded", "lit, with occlusion"]];
 const kLegends = {
   slope: ["0", "2 texels high per texel", "viridis"], tilt: ["0\u00b0", "90\u00b0", "viridis"],
   length: ["\u22120.1", "+0.1", "diverging"], "z-error": ["\u22120.1", "+0.1", "diverging"],
@@ -112,7 +113,7 @@ class Stage {
     const others = [["", "nothing"]];
     this.maps.forEach((map, k) => { if (k !== this.map && map.levels.length > 0) others.push([k, map.file]); });
     const map = this.maps[this.map];
-    const shows = kShows.filter(([name]) => map.channels[2] >= 0 || (name !== "length" && name !== "z-error"));
+    const shows = kShows.filter(([name]) => (name === "occluded" ? "occlusion" in map : map.channels[2] >= 0 || (name !== "length" && name !== "z-error")));
     this.controls = {height: this.range("height", 0.1, 3, 0.05), bump: this.range("bump", 0, 4, 0.05), split: this.range("split", 0, 1, 0.005)};
     this.greenA = this.green("yA");
     this.greenB = this.green("yB");
@@ -207,6 +208,8 @@ class Stage {
     this.tell();
   }
 
+  get isLit() { return this.show === "lit" || this.show === "occluded"; }
+
   paint() {
     const {a = this.map, b, yA, yB, split, tiles, bump, light, point} = this;
     return this.page.lighting.draw(this.canvas, {a, b, yA, yB, split, tiles, bump, light, point, show: kShows.findIndex(([name]) => name === this.show)});
@@ -216,7 +219,7 @@ class Stage {
     const two = this.b !== null;
     this.showControls();
     this.divider.style.left = `${100 * this.split}%`;
-    this.caption.textContent = this.show === "lit" ? `Move the pointer over the picture to move the light${two ? ", drag to move the split" : ""}.` : "In false colours.";
+    this.caption.textContent = this.isLit ? `Move the pointer over the picture to move the light${two ? ", drag to move the split" : ""}.` : "In false colours.";
     const legend = kLegends[this.show];
     this.legend.hidden = !legend;
     if (legend) {
@@ -241,7 +244,8 @@ class Stage {
     const words = ["preview-normals", quoted(this.maps[this.map].file)];
     if (this.b !== null) words.push(quoted(this.maps[this.b].file), "--split");
     words.push("-o", "lit.png");
-    if (this.show !== "lit") words.push("--show", this.show);
+    if (this.show === "occluded") words.push("--ambient", kMuchAmbient, "--occlusion", quoted(this.maps[this.map].occlusion));
+    else if (this.show !== "lit") words.push("--show", this.show);
     words.push("--light", this.light.join(","));
     if (this.point) words.push("--light-kind", "point");
     if (this.bump !== 1) words.push("--bump-scale", this.bump);

@@ -43,7 +43,8 @@ int32_t wanted_of(const tex_occlusion_options* options, Wanted& out) {
 }
 
 // The copy of the heights; the field in one orientation and the sums, of which one is turned over at a time, with room
-// for pieces that do not fit where others were; horizons; hulls; the rows that become turned columns.
+// for pieces that do not fit where others were; horizons; hulls; the horizons of one direction of a band; what holds
+// planes in the memory of others; the rows that become turned columns.
 std::size_t occlusion_scratch(std::int64_t width, std::int64_t height, const Wanted& wanted) {
     const auto whole = [](std::int64_t count) { return (count + kWhole - 1) / kWhole * kWhole; };
     const std::int64_t longer = std::max(width, height), run_in = std::max<std::int64_t>(longer, 256);
@@ -53,11 +54,13 @@ std::size_t occlusion_scratch(std::int64_t width, std::int64_t height, const Wan
     ScratchSize size;
     for (int k = 0; k < 1 + 3 + sums + 3; ++k) size.plane(whole(width), whole(height));
     if (o.horizons > 0) size.plane(width, height * o.horizons);
-    size.plane(2 * kBandLines, longer + run_in + 16);
-    size.vector<int>(longer + run_in);
+    size.plane(2 * kBandLines, (longer + run_in) / 2 + 40);
+    size.plane(kBandLines, longer);
+    size.vector<int>(longer + 2 * run_in + 16);
+    size.vector<Plane<float>>(2 * (3 + sums));
     for (int k = 0; k < 3; ++k) size.plane(width, std::max(64, 4 * radius));
     for (int k = 0; k < 3; ++k) size.plane(width, 1);
-    for (int k = 0; k < 2; ++k) size.vector<double>(8 * (o.directions + o.horizons));
+    for (int k = 0; k < 2; ++k) size.vector<double>(10 * (o.directions + o.horizons));
     add_gradient(size, radius);
     add_bake_rows(size, static_cast<int>(width), radius);
     return size.bytes();

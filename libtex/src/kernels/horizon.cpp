@@ -84,7 +84,7 @@ HWY_INLINE Point point_at(const LineRow& row, int i) {
 constexpr int kTogether = 2;
 static_assert(kBandLines % (kTogether * kLanes) == 0);
 
-void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend) {
+void PushHighest(HullBand& band, const LineRow* rows, int row_count, const TexelRow& seen_from, float bend) {
     const V bending = hn::Set(kD, bend);
     for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
         Point point[kTogether], top[kTogether], second[kTogether];
@@ -92,10 +92,11 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend)
         M hidden[kTogether];
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            point[v] = point_at(rows[0], i);
-            for (int k = 1; k < row_count; ++k) {
+            const Point eye{hn::LoadU(kD, seen_from.own + i), hn::Set(kD, seen_from.line.row)};
+            point[v] = point_at(rows[row_count - 1], i);
+            for (int k = row_count - 2; k >= 0; --k) {
                 const Point other = point_at(rows[k], i);
-                point[v] = select(hn::Ge(other.height, point[v].height), other, point[v]);
+                point[v] = select(is_higher(eye, point[v], other, bending), other, point[v]);
             }
             top[v] = {hn::Load(kD, band.top_heights + i), hn::Load(kD, band.top_rows + i)};
             second[v] = {hn::Load(kD, band.second_heights + i), hn::Load(kD, band.second_rows + i)};
@@ -128,17 +129,51 @@ void PushHighest(HullBand& band, const LineRow* rows, int row_count, float bend)
     }
 }
 
-void FindHorizons(const HullBand& band, const float* own, const NearPoint* points, int count, float row, float bend,
-                  float* horizons) {
+// A texel of a line in the middle of the rows: its height and row. A hole is no texel, so it has the height of the
+// highest.
+HWY_INLINE Point middle_of(const TexelRow* rows, int count, int i) {
+    V highest = hn::LoadU(kD, rows[0].own + i);
+    for (int k = 1; k < count; ++k) highest = hn::Max(highest, hn::LoadU(kD, rows[k].own + i));
+    V sum = hn::Zero(kD);
+    float row = 0.0f;
+    for (int k = 0; k < count; ++k) {
+        const V own = hn::LoadU(kD, rows[k].own + i);
+        sum = hn::Add(sum, hn::IfThenElse(hn::Eq(own, hn::Set(kD, kHoleHeight)), highest, own));
+        row += rows[k].line.row;
+    }
+    const float part = 1.0f / static_cast<float>(count);
+    return {hn::Mul(sum, hn::Set(kD, part)), hn::Set(kD, row * part)};
+}
+
+// What is farthest above the horizon of a texel, of three points.
+HWY_INLINE V highest_of(Point eye, Point nearer, Point found, Point farther, V bend) {
+    Point best = select(is_higher(eye, nearer, found, bend), found, nearer);
+    best = select(is_higher(eye, best, farther, bend), farther, best);
+    const V way = hn::Sub(eye.row, best.row);
+    return hn::Sub(hn::Div(hn::Sub(best.height, eye.height), way), hn::Mul(bend, way));
+}
+
+HWY_INLINE V highest_near(const TexelRow& row, V own, int i, V horizon) {
+    for (int k = 0; k < row.count; ++k) {
+        const NearPoint& point = row.points[k];
+        const V a = hn::Mul(hn::Set(kD, point.a_weight), hn::Sub(hn::LoadU(kD, point.a + i), own));
+        const V b = hn::Mul(hn::Set(kD, point.b_weight), hn::Sub(hn::LoadU(kD, point.b + i), own));
+        horizon = hn::Max(horizon, hn::Sub(hn::Add(a, b), hn::Set(kD, point.drop)));
+    }
+    return horizon;
+}
+
+void FindHorizons(const HullBand& band, const TexelRow* rows, int count, float bend) {
     const V bending = hn::Set(kD, bend);
     for (int first = 0; first < kBandLines; first += kTogether * kLanes) {
-        Point eye[kTogether], found[kTogether], next[kTogether];
+        Point eye[kTogether], nearer[kTogether], found[kTogether], next[kTogether];
         I depth[kTogether];
         M rises[kTogether];
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            eye[v] = {hn::LoadU(kD, own + i), hn::Set(kD, row)};
+            eye[v] = middle_of(rows, count, i);
             found[v] = {hn::Load(kD, band.top_heights + i), hn::Load(kD, band.top_rows + i)};
+            nearer[v] = found[v];
             next[v] = {hn::Load(kD, band.second_heights + i), hn::Load(kD, band.second_rows + i)};
             depth[v] = hn::Sub(hn::Load(kDI, band.counts + i), hn::Set(kDI, 1));  // of `found`
             // The slopes of a hull rise up to the horizon and fall behind it.
@@ -148,6 +183,7 @@ void FindHorizons(const HullBand& band, const float* own, const NearPoint* point
             for (int v = 0; v < kTogether; ++v) {
                 depth[v] = less_one(depth[v], rises[v]);
                 const Point behind = entry(band, hn::Sub(depth[v], hn::Set(kDI, 1)), first + v * kLanes);
+                nearer[v] = select(rises[v], found[v], nearer[v]);
                 found[v] = select(rises[v], next[v], found[v]);
                 next[v] = select(rises[v], behind, next[v]);
                 rises[v] =
@@ -156,162 +192,16 @@ void FindHorizons(const HullBand& band, const float* own, const NearPoint* point
         }
         for (int v = 0; v < kTogether; ++v) {
             const int i = first + v * kLanes;
-            const V way = hn::Sub(eye[v].row, found[v].row);
-            V horizon = hn::Sub(hn::Div(hn::Sub(found[v].height, eye[v].height), way), hn::Mul(bending, way));
+            const Point farther = select(at_least(depth[v], 1), next[v], found[v]);
             for (int k = 0; k < count; ++k) {
-                const NearPoint& point = points[k];
-                const V a = hn::Mul(hn::Set(kD, point.a_weight), hn::Sub(hn::LoadU(kD, point.a + i), eye[v].height));
-                const V b = hn::Mul(hn::Set(kD, point.b_weight), hn::Sub(hn::LoadU(kD, point.b + i), eye[v].height));
-                horizon = hn::Max(horizon, hn::Sub(hn::Add(a, b), hn::Set(kD, point.drop)));
+                const V own = hn::LoadU(kD, rows[k].own + i);
+                // A line that lies up to half a texel beside a valley is higher than the valley, far away and here.
+                Point eye_on_line = point_at(rows[k].line, i);
+                eye_on_line.height = hn::Max(eye_on_line.height, own);
+                const V far = highest_of(eye_on_line, nearer[v], found[v], farther, bending);
+                hn::StoreU(highest_near(rows[k], own, i, far), kD, rows[k].horizons + i);
             }
-            hn::StoreU(horizon, kD, horizons + i);
         }
-    }
-}
-
-// 1 / sqrt(x) within 7.5e-7 of its value: Newton's steps with factors that halve their errors (Walczyk, Moroz,
-// Cieslinski: Improving the Accuracy of the Fast Inverse Square Root by Modifying Newton-Raphson Corrections, 2021), a
-// quarter of the time of a root and a quotient. The instructions for it differ between processors.
-HWY_INLINE V inverse_root(V x) {
-    V root = hn::BitCast(kD, hn::Sub(hn::Set(kDI, 0x5f376908), hn::ShiftRight<1>(hn::BitCast(kDI, x))));
-    const V half = hn::Mul(x, hn::Set(kD, 0.5f));
-    for (const float factor : {1.50087896f, 1.50000057f})
-        root = hn::Mul(root, hn::Sub(hn::Set(kD, factor), hn::Mul(half, hn::Mul(root, root))));
-    return root;
-}
-
-// A texel in the plane of a direction: its slope, and the sine and cosine of its horizon. Its normal is (-slope, 1)
-// there, times a factor that is the same for all directions.
-struct Aspect {
-    V slope, sine, cosine;
-};
-
-HWY_INLINE Aspect aspect_of(V horizon, V p, V q, const SkyDirection& direction) {
-    const V one = hn::Set(kD, 1.0f);
-    const V slope = hn::Add(hn::Mul(p, hn::Set(kD, direction.x)), hn::Mul(q, hn::Set(kD, direction.y)));
-    // The plane of the texel itself hides what is below it.
-    const V tangent = hn::Max(horizon, slope);
-    const V cosine = inverse_root(hn::Add(one, hn::Mul(tangent, tangent)));
-    return {slope, hn::Mul(tangent, cosine), cosine};
-}
-
-// The integral of cos^2 h from the horizon to the vertical: cosine^3 g(sine) above the level, for a polynomial g that
-// was fitted at Chebyshev's points. Off by at most 3e-6.
-HWY_INLINE V squared_cosines(const Aspect& of) {
-    const V s = hn::Abs(of.sine);
-    V sum = hn::Set(kD, -0.0769763179f);
-    for (const float term :
-         {0.378519943f, -0.846462495f, 1.19290942f, -1.27133175f, 1.17095128f, -0.999673595f, 0.785395634f})
-        sum = hn::Add(hn::Mul(sum, s), hn::Set(kD, term));
-    const V above = hn::Mul(hn::Mul(hn::Mul(of.cosine, of.cosine), of.cosine), sum);
-    return hn::IfThenElse(hn::Lt(of.sine, hn::Zero(kD)), hn::Sub(hn::Set(kD, 1.57079633f), above), above);
-}
-
-// The integral of the cosine with the normal over angles h from the horizon to the vertical, times cos h, as
-// directions are denser near the level: of (-slope cos h + sin h) cos h.
-HWY_INLINE V shaded(const Aspect& of) {
-    const V upwards = hn::Mul(hn::Set(kD, 0.5f), hn::Mul(of.cosine, of.cosine));
-    return hn::Sub(upwards, hn::Mul(of.slope, squared_cosines(of)));
-}
-
-// The direction times that cosine, integrated likewise: along the level and upwards.
-struct Light {
-    V along, up;
-};
-
-HWY_INLINE Light bent(const Aspect& of) {
-    const V third = hn::Set(kD, 0.333333343f);
-    const V sine3 = hn::Mul(hn::Mul(of.sine, of.sine), of.sine);
-    const V cosine3 = hn::Mul(hn::Mul(of.cosine, of.cosine), hn::Mul(of.cosine, third));
-    const V level = hn::Add(hn::Sub(hn::Set(kD, 0.666666687f), of.sine), hn::Mul(sine3, third));
-    const V upright = hn::Mul(hn::Sub(hn::Set(kD, 1.0f), sine3), third);
-    return {hn::Sub(cosine3, hn::Mul(of.slope, level)), hn::Sub(upright, hn::Mul(of.slope, cosine3))};
-}
-
-HWY_INLINE void add(V more, float* sums) { hn::StoreU(hn::Add(hn::LoadU(kD, sums), more), kD, sums); }
-
-HWY_INLINE void add_vector(const float* horizons, const float* p, const float* q, const SkyDirection& direction,
-                           const SkyRow& sky) {
-    const V one = hn::Set(kD, 1.0f), zero = hn::Zero(kD), most = hn::Set(kD, kMaxSlope);
-    V horizon = hn::Mul(hn::LoadU(kD, horizons), hn::Set(kD, direction.for_rows));
-    horizon = hn::Min(hn::Max(horizon, direction.is_level ? zero : hn::Neg(most)), most);
-    if (sky.sky != nullptr || sky.horizon != nullptr) {
-        const V tangent = hn::Max(horizon, zero);
-        const V sine = hn::Mul(tangent, inverse_root(hn::Add(one, hn::Mul(tangent, tangent))));
-        if (sky.sky != nullptr) add(hn::Sub(one, sine), sky.sky);
-        if (sky.horizon != nullptr) hn::StoreU(hn::Min(sine, one), kD, sky.horizon);
-    }
-    if (sky.occlusion == nullptr && sky.x == nullptr) return;
-    const Aspect aspect = aspect_of(horizon, hn::LoadU(kD, p), hn::LoadU(kD, q), direction);
-    if (sky.occlusion != nullptr) add(shaded(aspect), sky.occlusion);
-    if (sky.x == nullptr) return;
-    const Light light = bent(aspect);
-    add(hn::Mul(light.along, hn::Set(kD, direction.x)), sky.x);
-    add(hn::Mul(light.along, hn::Set(kD, direction.y)), sky.y);
-    add(light.up, sky.z);
-}
-
-void AddSky(const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
-            const SkyRow& sky) {
-    const auto moved = [](auto* row, int i) { return row == nullptr ? nullptr : row + i; };
-    int i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
-        const SkyRow at{moved(sky.occlusion, i), moved(sky.sky, i), moved(sky.x, i),
-                        moved(sky.y, i),         moved(sky.z, i),   moved(sky.horizon, i)};
-        add_vector(horizons + i, moved(p, i), moved(q, i), direction, at);
-    }
-    if (i == count) return;
-    // Other threads may write what follows.
-    const int rest = count - i;
-    float in[3][kLanes] = {}, sums[6][kLanes] = {};
-    const float* const from[3] = {horizons, p, q};
-    float* const to[6] = {sky.occlusion, sky.sky, sky.x, sky.y, sky.z, sky.horizon};
-    for (int k = 0; k < 3; ++k) {
-        if (from[k] != nullptr) std::copy_n(from[k] + i, rest, in[k]);
-    }
-    const auto copy = [&](int k) { return to[k] == nullptr ? nullptr : std::copy_n(to[k] + i, rest, sums[k]) - rest; };
-    add_vector(in[0], in[1], in[2], direction, {copy(0), copy(1), copy(2), copy(3), copy(4), copy(5)});
-    for (int k = 0; k < 6; ++k) {
-        if (to[k] != nullptr) std::copy_n(sums[k], rest, to[k] + i);
-    }
-}
-
-// The z of a normal with these slopes.
-HWY_INLINE V upright(V p, V q) {
-    const V one = hn::Set(kD, 1.0f);
-    return hn::Div(one, hn::Sqrt(hn::Add(hn::Add(one, hn::Mul(p, p)), hn::Mul(q, q))));
-}
-
-void FinishSky(const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky) {
-    const V one = hn::Set(kD, 1.0f), zero = hn::Zero(kD);
-    const V number = hn::Set(kD, static_cast<float>(directions));
-    for (int i = 0; i < count; i += kLanes) {
-        const M is_hole = hn::Eq(hn::LoadU(kD, heights + i), hn::Set(kD, kHoleHeight));
-        // Comparisons, because sums of holes may be NaN.
-        const auto store = [&](V value, float* to) {
-            const V positive = hn::IfThenElseZero(hn::Gt(value, zero), value);
-            const V part = hn::IfThenElse(hn::Lt(positive, one), positive, one);
-            hn::StoreU(hn::IfThenElse(is_hole, one, part), kD, to);
-        };
-        if (sky.occlusion != nullptr) {
-            const V sum =
-                hn::Mul(hn::LoadU(kD, sky.occlusion + i), upright(hn::LoadU(kD, p + i), hn::LoadU(kD, q + i)));
-            store(hn::Div(hn::Add(sum, sum), number), sky.occlusion + i);
-        }
-        if (sky.sky != nullptr) store(hn::Div(hn::LoadU(kD, sky.sky + i), number), sky.sky + i);
-        if (sky.horizon != nullptr)
-            hn::StoreU(hn::IfThenZeroElse(is_hole, hn::LoadU(kD, sky.horizon + i)), kD, sky.horizon + i);
-        if (sky.x == nullptr) continue;  // there may be no slopes
-        const V slope_x = hn::LoadU(kD, p + i), slope_y = hn::LoadU(kD, q + i);
-        const V scale = hn::Div(upright(slope_x, slope_y), number);
-        Vec3 sum = LoadVec3(kD, sky.x + i, sky.y + i, sky.z + i);
-        sum = {hn::Mul(sum.x, scale), hn::Mul(sum.y, scale), hn::Mul(sum.z, scale)};
-        const M is_closed = hn::Lt(SquaredLength(sum), hn::Set(kD, 1e-10f));
-        const Vec3 normal = {hn::Neg(slope_x), hn::Neg(slope_y), one};
-        const auto either = [&](V closed, V open) { return hn::IfThenElse(is_closed, closed, open); };
-        // Lengths are above 1e-6: no slope is too steep for its square.
-        const Vec3 vector = {either(normal.x, sum.x), either(normal.y, sum.y), either(normal.z, sum.z)};
-        StoreVec3(kD, FlatUnless(kD, hn::Not(is_hole), Normalise(kD, vector)), sky.x + i, sky.y + i, sky.z + i);
     }
 }
 
@@ -344,19 +234,11 @@ void clear_hulls(HullBand& band) {
     for (float* const values : {band.top_rows, band.second_rows}) std::fill_n(values, kBandLines, 0.0f);
 }
 
-TEX_KERNEL(void, push_highest, PushHighest, (HullBand & band, const LineRow* rows, int count, float bend),
+TEX_KERNEL(void, push_highest, PushHighest,
+           (HullBand & band, const LineRow* rows, int count, const TexelRow& seen_from, float bend),
+           (band, rows, count, seen_from, bend))
+TEX_KERNEL(void, find_horizons, FindHorizons, (const HullBand& band, const TexelRow* rows, int count, float bend),
            (band, rows, count, bend))
-TEX_KERNEL(void, find_horizons, FindHorizons,
-           (const HullBand& band, const float* own, const NearPoint* points, int count, float row, float bend,
-            float* horizons),
-           (band, own, points, count, row, bend, horizons))
-TEX_KERNEL(void, add_sky, AddSky,
-           (const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
-            const SkyRow& sky),
-           (horizons, p, q, direction, count, sky))
-TEX_KERNEL(void, finish_sky, FinishSky,
-           (const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky),
-           (heights, p, q, directions, count, sky))
 TEX_KERNEL(ScaledHeights, scale_heights, ScaleHeights, (const float* in, float scale, int count, float* out),
            (in, scale, count, out))
 }  // namespace tex::inline v1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kernels/horizon.h: the horizons of a band of lines side by side, and the light above them.
+// kernels/horizon.h: the horizons of a band of lines side by side.
 //
 // A sweep goes from row to row; a line is one lane. What lies behind the sweep on a line is its upper convex hull, a
 // stack from the farthest point to the nearest. Horizons are rises for each row of distance.
@@ -12,8 +12,8 @@
 
 namespace tex::inline v1 {
 
-// 128 lines: with 64, a texel of 4096x4096 takes a quarter longer than one of 1024x1024.
-inline constexpr int kBandBits = 7;
+// With half as many lines, a texel of 4096x4096 takes a fifth longer.
+inline constexpr int kBandBits = 8;
 inline constexpr int kBandLines = 1 << kBandBits;
 
 // The height of a hole: so low that nothing beside it can see it. Heights are at most kMaxSlope.
@@ -40,49 +40,34 @@ struct LineRow {
     float row;
 };
 
-// Adds the highest point of `count` rows to the hull of each line; the last one, which is the nearest, if several are.
-// The rows follow one another and lie before all others.
-void push_highest(HullBand& band, const LineRow* rows, int count, float bend);
-
 // A point near a texel, between two texels a and b: a_weight (a[i] - own[i]) + b_weight (b[i] - own[i]) - drop.
 struct NearPoint {
     const float* a;
     const float* b;
     float a_weight, b_weight, drop;
 };
-inline constexpr int kMostNearPoints = 8;
+inline constexpr int kMostNearPoints = 11;
 
-// The horizon of texels with the heights `own` in this row: the greatest of what the points near it and the hull of its
-// line give. No hull may be empty.
-void find_horizons(const HullBand& band, const float* own, const NearPoint* points, int count, float row, float bend,
-                   float* horizons);
+// Rows whose horizons are found together, at most.
+inline constexpr int kMostRows = 4;
 
-// A direction in which horizons are measured.
-struct SkyDirection {
-    float x, y;      // a unit vector, to the right and upwards
-    float for_rows;  // rows in a unit of distance
-    bool is_level;   // no horizon lies below the level
+// Texels of a row: their heights, the lines beside them, the points near them, and where their horizons go.
+struct TexelRow {
+    const float* own;
+    LineRow line;
+    const NearPoint* points;
+    int count;
+    float* horizons;
 };
 
-// What is summed over the directions; null: is not wanted.
-struct SkyRow {
-    float* occlusion;
-    float* sky;
-    float* x;
-    float* y;
-    float* z;
-    float* horizon;  // not a sum: the sine of the last horizon, or 0 below the level
-};
+// Adds one point of `count` rows to the hull of each line: the highest above the horizon of the texels of a row that
+// comes soon after them. The rows follow one another and lie before all others.
+void push_highest(HullBand& band, const LineRow* rows, int count, const TexelRow& seen_from, float bend);
 
-// Adds the light above the horizons of `count` texels with the slopes p (to the right) and q (upwards), which
-// sky.sky and sky.horizon do without. Reads and writes no other texels.
-void add_sky(const float* horizons, const float* p, const float* q, const SkyDirection& direction, int count,
-             const SkyRow& sky);
-
-// Turns sums over `directions` into occlusion, sky view and unit vectors; the vector of a texel that sees nothing
-// becomes its normal. Holes become 1, 1, (0, 0, 1) and 0. Rows may be written up to a whole vector (64 bytes) past
-// their last texel.
-void finish_sky(const float* heights, const float* p, const float* q, int directions, int count, const SkyRow& sky);
+// The horizons of rows that follow one another: the greatest of what the points near a texel and the hull of its line
+// give. A hull is searched once, for a texel in the middle, and each texel takes the best of the point that is found
+// and of those beside it. No hull may be empty.
+void find_horizons(const HullBand& band, const TexelRow* rows, int count, float bend);
 
 // What scale_heights() met.
 struct ScaledHeights {

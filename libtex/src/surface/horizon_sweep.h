@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// horizon_sweep.h: the horizons of a field of heights in one direction, from row to row.
+// horizon_sweep.h: the horizons of a field of heights in one direction, or in two that are opposite, from row to row.
 //
 // A direction nearer to x than to y takes a field that is turned over its diagonal, with columns for rows: so each of
-// its lines crosses every row. Line j is at column j + shift s in step s of the sweep, between two texels. Each texel
-// takes the hull of the line that is nearest to its middle, and what is nearer than kNearRows from texels themselves.
+// its lines crosses every row. Line j is at column j + slant r in row r, between two texels. Each texel takes the
+// hull of the line that is nearest to its middle, and what is nearer than kNearRows from texels themselves.
+//
+// Opposite directions have the same lines. The horizons of the first one of a band are kept until those of the second
+// are there, too, and both are added at once: slopes and sums lie far apart in memory.
 
 #pragma once
 
@@ -12,6 +15,7 @@
 #include <tex/types.h>
 
 #include "kernels/horizon.h"
+#include "kernels/sky_light.h"
 #include "memory/lent_memory.h"
 
 namespace tex::inline v1 {
@@ -32,23 +36,30 @@ struct SkySums {
     [[nodiscard]] SkyRow at(int row, int column);
 };
 
-// How a sweep goes.
+// One way of a sweep.
 struct SweepDirection {
     SkyDirection sky;
-    double shift = 0.0;    // columns that a line moves from step to step, -1 to 1
     bool upwards = false;  // from the last row to the first: texels look for what is below them
-    float bend = 0.0f;     // kernels/horizon.h
 };
 
-// One direction over all lines, a band at a time. Bands are independent of each other, and no texel is in two of them.
+// How sweeps go along the same lines.
+struct SweepLines {
+    SweepDirection directions[2];
+    int count = 1;       // of the directions; the second one is opposite to the first
+    double slant = 0.0;  // columns that a line moves from a row to the next, -1 to 1
+    float bend = 0.0f;   // kernels/horizon.h
+};
+
+// One or two directions over all lines, a band at a time. Bands are independent of each other, and no texel is in two
+// of them.
 class HorizonSweep {
 public:
     // The parameters must outlive this.
-    HorizonSweep(const HorizonField& field, const SweepDirection& direction, SkySums& sums);
+    HorizonSweep(const HorizonField& field, const SweepLines& lines, SkySums& sums);
 
     [[nodiscard]] int bands() const { return bands_; }
 
-    // Stacks for the hulls of a band, which any sweep over a field of this extent can use.
+    // What a band needs, which any sweep over a field of this extent can use.
     class Stacks {
     public:
         explicit Stacks(Extent extent);
@@ -56,6 +67,7 @@ public:
     private:
         friend class HorizonSweep;
         Plane<float> points_;  // most of it is never touched
+        Plane<float> kept_;    // the horizons of the first of two directions, row by row
         HullBand hulls_;
     };
 
@@ -65,16 +77,15 @@ public:
 private:
     class Band;
 
-    // The column of line 0 in a step, rounded.
-    [[nodiscard]] int shift_at(int step) const { return shifts_[static_cast<std::size_t>(step + run_in_)]; }
-    [[nodiscard]] int row_at(int step) const;
+    // The column of line 0 in a row, rounded; also for rows of the run-in, which lie outside the field.
+    [[nodiscard]] int shift_at(int row) const { return shifts_[static_cast<std::size_t>(row + run_in_)]; }
 
     const HorizonField& field_;
-    const SweepDirection& direction_;
+    const SweepLines& plan_;
     SkySums& sums_;
     bool repeats_;
     int first_line_ = 0, lines_ = 0, bands_ = 0, run_in_ = 0;
-    WorkingVector<int> shifts_;  // of all steps
+    WorkingVector<int> shifts_;  // of all rows
 };
 
 }  // namespace tex::inline v1
