@@ -9,7 +9,8 @@
 # --files, all files whose errors, warnings or classes differ follow.
 #
 # The exit status is 1 if a map has an error that its verdict calls false, if a map without a verdict has an error that
-# it did not have, if a picture that is no normal map has none, or if a safe repair would change a sound map. Where the data are missing, it says so and passes.
+# it did not have, if a picture that is no normal map has none, or if a safe repair would change a sound map. Where the
+# data are missing, it says so and passes.
 import collections
 import hashlib
 import json
@@ -126,7 +127,8 @@ def main():
         print("wrong:", file, " ".join(sorted(now.get(file, set()))))
     maps = [row["file"] for row in rows if row["kind"] in ("normal", "labpbr")]
     changed = changed_by_safe_repairs(sys.argv[1], maps)
-    print(f"safe repairs change {len(changed)} of {len(maps)} maps, of which {len(changed.keys() & FAULTY)} have the fault")
+    faulty = len(changed.keys() & FAULTY)
+    print(f"safe repairs change {len(changed)} of {len(maps)} maps, of which {faulty} have the fault")
     harmed = sorted(changed.keys() - FAULTY)
     for file in harmed:
         print("changed:", file, changed[file])

@@ -332,14 +332,15 @@ private:
     }
 
     // Whether the map shows that the step was not the right one. x and y that were exchanged show the direction of
-    // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. After the right
-    // turn, slopes follow the heights. Numbers read with the right sign do not lean.
+    // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. After the
+    // right turn, slopes follow the heights. Numbers read with the right sign do not lean.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
         if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
         const bool is_by_heights = step.rule->id == "N601";
         const bool turns = step.kind == RepairKind::turn_left || step.kind == RepairKind::turn_right;
         if (turns && options_.turned && !is_by_heights) return false;
-        if (!turns && !is_by_heights && (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely)) return false;
+        if (!turns && !is_by_heights && (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely))
+            return false;
         const std::optional<YAxis> wanted =
             options_.checks.require.y ? options_.checks.require.y : std::optional(current().y_axis);
         if (turns || is_by_heights)

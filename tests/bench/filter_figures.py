@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # filter_figures.py: whether filters bring damaged maps nearer to what they were, in mean degrees, for VERDICTS.md.
 #
-# JPEG of quality 50, 75 and 90 (4:2:0): the map after its JPEG; with the blocks of luma smoothed, and of chroma, too, by
-# applying the same quantiser to shifted copies and taking their mean (Nosratinia 2001); and as the nearest surface
-# (Frankot, Chellappa 1988), each channel weighted by the frequencies that it holds. Heights of 8 bits: the bake, and the
-# bake after a blur of its normals by 1 texel. Needs PIL and numpy. The first half of the maps of wild4, by the SHA-256 of
-# their names, is "tune"; nothing was tuned on either.
+# JPEG of quality 50, 75 and 90 (4:2:0): the map after its JPEG; with the blocks of luma smoothed, and of chroma, too,
+# by applying the same quantiser to shifted copies and taking their mean (Nosratinia 2001); and as the nearest surface
+# (Frankot, Chellappa 1988), each channel weighted by the frequencies that it holds. Heights of 8 bits: the bake, and
+# the bake after a blur of its normals by 1 texel. Needs PIL and numpy. "tune" are the maps of wild4 with an even first
+# byte of the SHA-256 of their names; nothing was tuned on either half.
 import hashlib
 import io
 import os

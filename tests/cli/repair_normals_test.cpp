@@ -127,8 +127,8 @@ TEST_F(RepairNormals, AnotherEncodingIsThatOfPackNormals) {
 
 // A clean map comes out as pack-normals writes it, byte for byte.
 TEST_F(RepairNormals, ACleanMapIsWhatPackNormalsWrites) {
-    for (const std::string& format : {"rgb8", "rgb16", "bc5", "dxt5nm", "bc7", "rg8-snorm", "rgba32f"}) {
-        for (const std::string& file : {"a.dds", "a.ktx2", "a.png"}) {
+    for (const std::string format : {"rgb8", "rgb16", "bc5", "dxt5nm", "bc7", "rg8-snorm", "rgba32f"}) {
+        for (const std::string file : {"a.dds", "a.ktx2", "a.png"}) {
             const std::vector<std::string> options = {"clean.png", "-o", file, "--format", format};
             scratch_.write(file, "");
             const Ran packed = run(scratch_, "pack-normals", options);

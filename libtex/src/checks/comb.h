@@ -14,8 +14,8 @@
 
 namespace tex::inline v1 {
 
-// 256 codes went through a curve and were rounded again, so that a code of the result stands for none, one or several of
-// them. Where the counts of neighbouring codes differ as these numbers do, the curve is known, whatever the vectors
+// 256 codes went through a curve and were rounded again, so that a code of the result stands for none, one or several
+// of them. Where the counts of neighbouring codes differ as these numbers do, the curve is known, whatever the vectors
 // look like. (Stamm, Liu: Forensic detection of image manipulation using statistical intrinsic fingerprints, 2010.)
 struct CombFit {
     ToneCurve curve;

@@ -66,7 +66,9 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = Z
         const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
         const double square = 1.0 - a * a - b * b;
         const double root = std::sqrt(std::max(0.0, square));
-        const double before = form == ZForm::whole ? 0.5 + 0.5 * root : form == ZForm::inverted ? 0.5 - 0.5 * root : root;
+        const double before = form == ZForm::whole      ? 0.5 + 0.5 * root
+                              : form == ZForm::inverted ? 0.5 - 0.5 * root
+                                                        : root;
         const double expected = redone(curve, before);
         sum += std::abs(expected - z) + 0.5 * std::max(0.0, -square);
     }

@@ -62,6 +62,9 @@ int channel_of(const Swizzle& swizzle, Component component) {
     return at == swizzle.end() ? -1 : static_cast<int>(at - swizzle.begin());
 }
 
+// The words of N308, where the direction of green says which of the two it was.
+constexpr std::string_view kTurned = "the picture was turned";
+
 // Two channels are exchanged: z and the one that the finding names, or x and y.
 std::vector<RepairStep> exchanges(const RepairStep& step, const Finding& finding, const CheckReport& report,
                                   bool y_is_known) {
@@ -77,14 +80,14 @@ std::vector<RepairStep> exchanges(const RepairStep& step, const Finding& finding
     if (misplaces_z && step.certainty == safe && z >= 0) {
         add(x, z);
         add(y, z);
-    } else if (!misplaces_z && step.certainty == likely && y_is_known) {
+    } else if (!misplaces_z && step.certainty == likely && y_is_known && !finding.message.starts_with(kTurned)) {
         add(x, y);
     }
     return steps;
 }
 
-// The vectors are turned as the picture was. Either turn suits the slopes; one makes dents of bumps, which heights show.
-// Heights that the slopes do not follow (N601) may follow after a turn, or after x and y are exchanged.
+// The vectors are turned as the picture was. Either turn suits the slopes; one makes dents of bumps, which heights
+// show. Heights that the slopes do not follow (N601) may follow after a turn, or after x and y are exchanged.
 std::vector<RepairStep> turns(RepairStep step, const Finding& finding, const KnownOfMap& known) {
     const bool by_heights = known.heights && known.y, is_of_heights = finding.rule->id == "N601";
     if (finding.unit == "component" || (is_of_heights && !by_heights)) return {};

@@ -28,7 +28,8 @@ int code_at(float value) {
 std::vector<float> steps_of(const Plane<float>& plane) {
     std::array<bool, kStepCodes> is_used{};
     for (int j = 0; j < plane.extent().height; ++j) {
-        for (int i = 0; i < plane.extent().width; ++i) is_used[static_cast<std::size_t>(code_at(plane.at(i, j)))] = true;
+        for (int i = 0; i < plane.extent().width; ++i)
+            is_used[static_cast<std::size_t>(code_at(plane.at(i, j)))] = true;
     }
     std::vector<float> steps;
     for (int code = 0, last = -kLeastStep; code < kStepCodes; ++code) {
@@ -65,7 +66,8 @@ Result<void> smooth_channel(Plane<float>& plane, const std::vector<float>& steps
     if (!smooth) return smooth.error();
     if (!smooth->report.applied) return Error{ErrorCode::unsupported, {}, "the values lie on no steps"};
     for (int j = 0; j < plane.extent().height; ++j) {
-        for (int i = 0; i < plane.extent().width; ++i) plane.at(i, j) = value_at(steps, smooth->height.at(i, j) / kStepUnit);
+        for (int i = 0; i < plane.extent().width; ++i)
+            plane.at(i, j) = value_at(steps, smooth->height.at(i, j) / kStepUnit);
     }
     return {};
 }
