@@ -247,7 +247,7 @@ TEST(Verdicts, AFillerInBlueIsSaidWhereItBendsNormals) {
             return c;
         });
     };
-    EXPECT_EQ(ids(filled(0.2)), Ids{});
+    EXPECT_EQ(ids(filled(0.16)), Ids{});
     EXPECT_EQ(ids(filled(1.0)), Ids{"N209"});
 }
 
