@@ -184,8 +184,8 @@ void BakeNormals::warn_of_steep(cli::Job& job, std::int64_t steep_texels, Extent
     if (steep_texels == 0) return;
     const float steepest = steepest_slope(encoding);
     job.warn(fmt::format(
-        "{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower "
-        "the strength, choose a deeper --format, or name the value of texels without data by --no-data",
+        "{} of {} texels are steeper than {} can hold, which stores all slopes above {:.{}f} alike; lower the strength "
+        "or choose a deeper --format, and if cliffs surround texels without data, --no-data names their value",
         steep_texels, extent.texels(), name_of(kEncodingNames, encoding), steepest, steepest < 100.0f ? 1 : 0));
 }
 

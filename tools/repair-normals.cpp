@@ -200,10 +200,12 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
     }
     for (const RepairStep& step : repaired.steps) {
         if (step.rule->id != "N220") continue;
+        const bool is_in_model = job.task.model != nullptr;
         job.warn(
-            "blue alone was inverted back; if bumps look like dents now, the whole picture was inverted, and "
-            "scale-normals --scale -1 turns x and y, too",
-            name);
+            std::string("blue alone was inverted back; if bumps look like dents now, the whole picture was "
+                        "inverted: ") +
+                (is_in_model ? "invert it in an image editor instead" : "scale-normals --scale -1 turns x and y, too"),
+            is_in_model ? "" : name);
     }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
     const std::lock_guard lock(mutex_);

@@ -191,7 +191,7 @@ TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals N804*.glb -o x.glb --container jpeg --format rgb16", 2, "jpeg files cannot hold rgb16");
     refuses("pack-normals N804*.glb -o x.glb --mips all", 2, "--mips: models hold no levels: engines build them");
     refuses("pack-normals N804*.glb -o x.glb --alpha 0.5", 2, "--alpha is for one map, and not for models");
-    refuses("pack-normals N804*.glb -o x.glb --quality 80", 2, "--quality needs a JPEG file");
+    refuses("pack-normals N804*.glb -o x.glb --quality 80", 2, "--quality: needs a JPEG file");
     refuses("pack-normals N804*.glb -o x.glb --material glass", 4, "has no material \"glass\"");
     refuses("pack-normals N804*.glb -o none/x.glb", 3, "none");
     scratch_.write("bad.glb", std::string("glTF\2\0\0\0", 8));

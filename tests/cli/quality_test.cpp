@@ -33,7 +33,8 @@ TEST(Quality, IsRefusedForOtherFiles) {
     scratch.add_sample("bricks.png", "a.png");
     const std::pair<const char*, const char*> cases[] = {
         {"-o b.png --quality 90",
-         "bake-normals: error: b.png: --quality needs a JPEG file; of blocks, it is --effort\n"},
+         "bake-normals: error: --quality: needs a JPEG file; WebP is written without loss, and of blocks it is "
+         "--effort\n"},
         {"-o b.jpg --quality 0", "bake-normals: error: --quality: 0 is not at least 1 and at most 100\n"},
         {"-o b.jpg --quality 101", "bake-normals: error: --quality: 101 is not at least 1 and at most 100\n"}};
     for (const auto& [arguments, message] : cases) {

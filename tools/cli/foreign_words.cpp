@@ -79,6 +79,13 @@ constexpr ForeignOption kForeignOptions[] = {
     {"--gl --ogl --opengl --y --y-in", "--require y=up"},
     {"--dx --d3d --directx", "--require y=down"},
     {"--zcmp --zstd", "--supercompress zstd"},
+    {"--engine --target --platform", "--for"},
+    {"--width --max-width --maxsize", "--max-size"},
+    {"--generate-tangents --make-tangents --compute-tangents --gen-tangents", "--tangents mikktspace"},
+    {"--detail-tiling --detail-scale --detail-repeat", "--tiling"},
+    {"--check", "--dry-run, which says what would be made"},
+    {"--force --rebuild --always-make -B",
+     "what an output depends on decides, and --dry-run shows it; remove an output to make it again"},
     {"--rdo --lambda --rdo-lambda --uastc_rdo_l", "--rdo-mean"},
     {"--threshold --tolerance --epsilon", "--max-mean"},
     {"--diff --diff-out", "--heatmap"},
@@ -136,6 +143,7 @@ constexpr ForeignClause kForeignClauses[] = {
      "LabPBR is a layout of channels: check-normals reads it with --swizzle labpbr, pack-normals and bake-normals "
      "write it with --layout labpbr"},
     {"terrain3d source skyrim", "unity", "that is a layout of channels: pack-normals --layout {0} writes it"},
+    {"webgl webgpu web browser", "three", "name what draws it: three, babylon, playcanvas, cesium or gltf"},
     {"webp png jpeg jpg exr tiff tif tga bmp dds ktx2", "dxt5nm",
      "{0} is a file type: the name of the output ends in .{0}, or --container {0}"},
 };

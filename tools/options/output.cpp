@@ -168,7 +168,7 @@ Container OutputOptions::container_for(const std::string& output, Container stan
     if (rdo.mean > 0.0f && !can_hold(chosen, Encoding::dxt5nm) && !can_hold(chosen, Encoding::astc_4x4))
         throw UsageError(printable(output), "--rdo-mean needs a DDS, KTX2 or ASTC file");
     if (quality && chosen != Container::jpeg)
-        throw UsageError(printable(output), "--quality needs a JPEG file; of blocks, it is --effort");
+        throw UsageError("--quality", "needs a JPEG file; WebP is written without loss, and of blocks it is --effort");
     return chosen;
 }
 

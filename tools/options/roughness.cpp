@@ -251,14 +251,14 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         const Container container = container_for(path);
         check_format(task, path, container);
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
-        throw UsageError(printable(path),
-                         is_in_place()
-                             ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, which "
-                                           "then holds what is kept, too",
-                                           name_of(kContainerNames, container))
-                             : fmt::format("{} files hold one level; --roughness-out needs .dds, .ktx2 or .exr, or "
-                                           "{{level}}",
-                                           name_of(kContainerNames, container)));
+        throw UsageError(
+            printable(path),
+            is_in_place() ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, which "
+                                        "then holds what is kept, too",
+                                        name_of(kContainerNames, container))
+                          : fmt::format("{} files hold one level; --roughness-out takes a .dds, .ktx2 or .exr, which "
+                                        "hold all, or a name with {{level}} for a file of each",
+                                        name_of(kContainerNames, container)));
     }
 }
 
@@ -291,7 +291,7 @@ RoughnessFile RoughnessOptions::file(Job& job, Effort effort) const {
 
 void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     if (!is_given()) return;
-    const std::string path = output_of(job.task);
+    const std::string path = output_of(job.task), shown = written_name(path);
     const std::vector<std::string> normals = job.outputs();
     if (has_level(job.task.output)) job.report["output"] = normals;
     wrote_levels(job, path, packed.levels);
@@ -301,17 +301,17 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     if (!is_known) {
         job.warn(fmt::format("without --roughness-in, the material's own roughness is 0, a mirror; {} has nothing else",
                              packed.levels == 1 ? "the only level" : "the base level"),
-                 path);
+                 shown);
     }
     if (into_.file.empty() && parts_for(job.task)[3] == RoughnessPart::smoothness) {
         job.warn(
             fmt::format("red is 0, which {} reads as no metal; for a metal, --roughness-into METAL:a keeps the red "
                         "of its own texture",
                         job.task.engine->name),
-            path);
+            shown);
     }
     if (is_known && packed.levels == 1) {
-        job.warn("one level loses no variance, so its roughness is the material's own, unchanged", path);
+        job.warn("one level loses no variance, so its roughness is the material's own, unchanged", shown);
     }
     Json map;
     if (has_level(path))

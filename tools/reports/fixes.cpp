@@ -324,8 +324,9 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
         command.program.empty() ? void(command = step) : join_commands(command, step);
     }
     if (!target) {
-        return {fmt::format("No command writes {} with this layout. Correct the file in the program that made it.",
-                            name_of(kFormatNames, report.format))};
+        return {fmt::format(
+            "No command writes normals as {} in channels like these: correct the file in the program that made it.",
+            name_of(kFormatNames, report.format))};
     }
     std::string fix = command.program + " FILE";
     for (const std::string& option : command.options) fix += " " + option;
@@ -333,7 +334,11 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     if (id == "N210" && format_info(report.format).bits > 8 && container_of(report.file) != Container::png)
         fix += " --fill-invalid";
     fix += " --format SAME -o FIXED";
-    return {filled_in(std::move(fix), *target, report, require), true, mirror_advice(id, *target, report, require)};
+    std::string advice = mirror_advice(id, *target, report, require);
+    // Occlusion that stays near 1 looks like the z of short vectors.
+    if (id == "N201" && (target->encoding == Encoding::rgba8 || target->encoding == Encoding::rgba16))
+        advice = "If blue holds occlusion, as in LabPBR, that would wipe it out: --swizzle labpbr checks x and y alone";
+    return {filled_in(std::move(fix), *target, report, require), true, std::move(advice)};
 }
 
 }  // namespace tex::cli

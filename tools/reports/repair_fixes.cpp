@@ -39,6 +39,9 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     const std::optional<Container> own = container_of(report.file);
     const bool is_kept = own && *own != Container::jpeg;
     replace_word(text, "FIXED", "FIXED" + (model.empty() ? extension_of(is_kept ? *own : Container::png) : model));
+    // A model is not written with green down, of which repair-normals cannot say whether it is green or red.
+    if (!model.empty() && report.y.y == YAxis::down && text.find("--mirrored") == std::string::npos)
+        text.insert(kRepair.size(), " --mirrored green");
     const std::string material = model.empty() ? "" : " --material " + shell_word(report.material);
     replace_word(text, "FILE", shell_file(report.file) + material);
     return text;

@@ -92,10 +92,11 @@ void RepairTotals::add(const Repaired& of) {
 }
 
 std::string RepairTotals::text(bool is_dry_run) const {
-    std::string text = fmt::format("{} {}: {} {}repaired, {} unchanged, without a fault that it repairs", maps,
+    std::string text = fmt::format("{} {}: {} {}repaired, {} without a fault to repair", maps,
                                    maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "", whole);
     if (refused > 0)
-        text += fmt::format(", {} {}not written, because an error is left", refused, is_dry_run ? "would be " : "");
+        text +=
+            fmt::format(", {} {}not written, because an error would be left", refused, is_dry_run ? "would be " : "");
     return text;
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -263,6 +264,25 @@ Result<void> make_pictures(Job& job, ModelChanges& changes,
     return {};
 }
 
+namespace {
+
+// UASTC is small in the memory of a GPU, and often larger than PNG in the file, which surprises those who shrink
+// models.
+void warn_of_growth(Job& job, const ModelChanges& changes) {
+    const bool has_uastc = std::any_of(changes.pictures.begin(), changes.pictures.end(),
+                                       [](const ModelPicture& one) { return one.container == Container::ktx2; });
+    std::error_code error;
+    const auto size = [&](const std::string& path) { return std::filesystem::file_size(path, error); };
+    const std::uintmax_t before = size(job.task.input), after = size(job.task.output);
+    if (error || !has_uastc || after <= before) return;
+    job.warn(fmt::format("it has {} bytes, and {} before: UASTC saves memory of the GPU, not always bytes of the file; "
+                         "--max-size makes it smaller, or --container webp in its place",
+                         after, before),
+             job.task.output);
+}
+
+}  // namespace
+
 Result<void> write_model_output(Job& job, const ModelChanges& changes) {
     MeshReadOptions how;
     how.reader = job.read_options;
@@ -279,6 +299,7 @@ Result<void> write_model_output(Job& job, const ModelChanges& changes) {
         const std::string more = names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : "";
         job.warn(fmt::format("it names {}{}, which {}", printable(names.front()), more, what));
     };
+    warn_of_growth(job, changes);
     warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
     warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
     if (written->compressed > 0) {

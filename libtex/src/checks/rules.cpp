@@ -130,7 +130,8 @@ constexpr Rule kTextureRules[] = {
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
      "G rise and fall together, or do not centre on the middle. No other rule judges the texels.",
-     "Give the slot of the normal map the picture that belongs there.",
+     "Give the slot of the normal map the picture that belongs there. If these are normals in other channels, --swizzle "
+     "names them, such as dxt5nm.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     {"N215", "background", values, warning, true, "The background is not filled.",
@@ -224,8 +225,8 @@ constexpr Rule kTextureRules[] = {
      "and none when x and y are exchanged. Then the channels of x and y changed places (also where the order of BC5's "
      "blocks was mistaken), or the picture was turned by 90 degrees while its vectors stayed. Maps whose structures "
      "are diagonal (rope, braids) fit either way and are not judged.",
-     "If channels are exchanged, export the map again with x in red and y in green. If the picture was turned, turn it "
-     "back in an image editor; if bumps then look like dents, turn it by 180 degrees more.",
+     "If channels are exchanged, pack-normals --swizzle gr reads them in their right order. If the picture was turned, "
+     "repair-normals --turned left (or right) turns it back, and --height FILE tells which of all these it was.",
      "N201 N202 N205 N207 N209 N213 N214 N215 N401 N402 N403 N404"},
     {"N309", "turned", damage, error, true, "The picture was turned, but its vectors were not.",
      "Its normals lean by the angle of the turn: what is lit from above on one side is lit from the left on the other. "
@@ -251,16 +252,17 @@ constexpr Rule kTextureRules[] = {
      "then lean to the lower left. A bit is lost where half is left: export the map again at full opacity if you have "
      "its source.",
      "repair-normals FILE -o FIXED",
-     "N201 N202 N205 N207 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
+     "N201 N202 N205 N207 N209 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N314", "levels-changed", damage, error, true, "Gamma, brightness or contrast were changed.",
      "x and y do not centre on the middle, and one curve for all channels, gamma or levels, brings them back and makes "
      "z fit x and y. Image editors change levels so, and viewers that write what they show. Flat areas lean then. "
      "Export the map again without it if you have its source: taking the curve back leaves coarser steps.",
      "repair-normals FILE -o FIXED",
-     "N201 N202 N205 N207 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
+     "N201 N202 N205 N207 N209 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N315", "posterised", damage, note, true, "x and y take few values.",
      "The picture was reduced to few colours: posterised, or stored with 4 or 5 bits a channel. Smooth surfaces show "
-     "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its source: "
+     "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its "
+     "source: "
      "smooth values between the steps are a guess.",
      "repair-normals FILE --likely -o FIXED", "N201 N305"},
 
