@@ -12,7 +12,7 @@
 
 namespace tex::inline v1 {
 
-// With half as many lines, a texel of 4096x4096 takes a fifth longer.
+// With half as many lines, a texel of 4096x4096 takes a tenth longer.
 inline constexpr int kBandBits = 8;
 inline constexpr int kBandLines = 1 << kBandBits;
 

@@ -26,9 +26,9 @@ constexpr int kPushedTogether = 2;
 constexpr int kFarPushedTogether = 8;
 constexpr int kFarAway = 64;
 
-// What did not pay: one hull for two lines (a quarter less time, but half a texel beside a groove it is wrong by
-// 0.016); three searches, for the lowest, the middle and the highest texel (no nearer); the light of both directions of
-// a line without bands of 256 lines (it stays in the cache too short).
+// What did not pay: one hull for two lines (a quarter less time, but half a texel beside a groove its occlusion is
+// wrong by 0.016); three searches, for the lowest, the middle and the highest texel (slower, and no nearer); four
+// vectors searched together.
 
 constexpr int kMargin = 8;                              // columns of a window beside the lines of a band
 constexpr int kWindow = kBandLines + 2 * kMargin + 16;  // and room for a whole vector
