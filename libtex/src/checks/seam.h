@@ -34,8 +34,8 @@ struct Seam {
 };
 Seam measure_seam(const Stored& stored);
 
-// The same, but what cannot stand out with a ratio of `least` or more is all 0. In most maps, the first few lines
-// inside tell, so that this takes next to no time.
+// measure_seam(), with all 0 for what cannot stand out with a ratio of `least` or more. In most maps, the first few
+// lines inside tell, so that this takes next to no time.
 Seam find_seam(const Stored& stored, double least);
 
 }  // namespace tex::inline v1

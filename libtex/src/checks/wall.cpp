@@ -30,7 +30,7 @@ struct WallLines {
         const float nz = z < 0 ? reconstruct_z(nx, ny) : stored.component(z, i, j);
         return std::isfinite(nx + ny + nz) ? BorderSlope::fixed_slope(columns ? nx : ny, nz) : 0;
     }
-    // Of lines `first` to `last - 1`.
+    // The slopes of lines `first` to `last - 1`, added.
     [[nodiscard]] WallSums sums(int first, int last) const {
         WallSums sums{};
         for (int k = 0; k < length(); k += BorderSlope::kStep) {
