@@ -130,7 +130,8 @@ constexpr Rule kTextureRules[] = {
     {"N214", "not-a-normal-map", values, error, true, "The picture is no normal map.",
      "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
      "G rise and fall together, or do not centre on the middle. No other rule judges the texels.",
-     "Give the slot of the normal map the picture that belongs there. If these are normals in other channels, --swizzle "
+     "Give the slot of the normal map the picture that belongs there. If these are normals in other channels, "
+     "--swizzle "
      "names them, such as dxt5nm.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
@@ -262,8 +263,7 @@ constexpr Rule kTextureRules[] = {
     {"N315", "posterised", damage, note, true, "x and y take few values.",
      "The picture was reduced to few colours: posterised, or stored with 4 or 5 bits a channel. Smooth surfaces show "
      "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its "
-     "source: "
-     "smooth values between the steps are a guess.",
+     "source: smooth values between the steps are a guess.",
      "repair-normals FILE --likely -o FIXED", "N201 N305"},
 
     // -- convention -------------------------------------------------------------------------------------------
