@@ -4,8 +4,8 @@
 # the lowest byte, the other with red there (D3DFMT_A8B8G8R8, as many exporters write it), as their channel masks say.
 #
 # Expected: the same picture, because the masks say which byte is which channel.
-# Seen (2026-11-29): the masks are not looked at, and blue is taken from the lowest byte of both. In a normal map x and z
-# are exchanged: (190, 128, 240) comes out as (240, 128, 190).
+# Seen (2026-11-29): the masks are not looked at, and blue is taken from the lowest byte of both. In a normal map x and
+# z are exchanged: (190, 128, 240) comes out as (240, 128, 190).
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

@@ -4,9 +4,9 @@
 # (D3DFMT_X8R8G8B8, which exporters write for opaque maps).
 #
 # Expected: R, G and B of each texel, and the fourth byte skipped.
-# Seen (2026-11-29): three bytes are taken for each texel, whatever the header says of its size. From the second texel on
-# channels are shifted, and the last quarter of the picture is missing without an error. A flat normal map, 128 128 255,
-# becomes stripes.
+# Seen (2026-11-29): three bytes are taken for each texel, whatever the header says of its size. From the second texel
+# on channels are shifted, and the last quarter of the picture is missing without an error. A flat normal map, 128 128
+# 255, becomes stripes.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

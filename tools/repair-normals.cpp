@@ -105,6 +105,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     files.add(command);
     command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
         .often(4, "print what would be done, and write nothing");
+    report_.add(command);
     command.group("Repairs");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     const auto rules_into = [](std::vector<std::string>& names) {
@@ -144,7 +145,6 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     layout.preset = "auto";
     layout.completes = cli::Completes::words;
     cli::add_length_in(command, length_in_);
-    report_.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
     command.check([this] {

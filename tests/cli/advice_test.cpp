@@ -321,6 +321,27 @@ TEST_F(Advice, AnInvertedPictureIsNotMendedInSilence) {
         << "255 - code is 128 where n has 127";
 }
 
+// What cannot be told is asked for, and the command that undoes a change is printed in place of one that hides it.
+TEST_F(Advice, FixesOfTurnedAndStretchedPicturesAreThoseThatHelp) {
+    const auto says = [&](const std::string& line) { return shell(scratch_, line); };
+    ASSERT_EQ(says("bake-normals bricks.png -o n.png --bumpiness 3 --no-sync; convert n.png -level 10%,90% l.png;"
+                   "convert n.png -rotate 90 t.png; convert n.png -gamma 2.2 g.png")
+                  .err,
+              "");
+    EXPECT_NE(says("check-normals l.png").out.find("fix: repair-normals l.png --likely -o FIXED.png"),
+              std::string::npos)
+        << says("check-normals l.png").out;
+    EXPECT_EQ(
+        says("repair-normals l.png --likely -o FIXED.png --no-sync && compare-normals n.png FIXED.png --max-mean 1")
+            .code,
+        0);
+    const std::string turned = says("check-normals t.png --require y=up").out;
+    EXPECT_NE(turned.find("fix: repair-normals t.png --turned left -o FIXED.png"), std::string::npos) << turned;
+    EXPECT_NE(turned.find("--turned right"), std::string::npos) << turned;
+    EXPECT_EQ(says("repair-normals t.png --turned left -o FIXED.png --no-sync").code, 0);
+    EXPECT_NE(says("check-normals g.png").out.find("gamma 2.2 fits better than the curve of sRGB"), std::string::npos);
+}
+
 TEST_F(Advice, JpegThatNobodyChoseIsNamed) {
     const auto says = [&](const std::string& line) { return shell(scratch_, line + " --no-sync").err; };
     ASSERT_EQ(says("bake-normals bricks.png -o a_n.jpg --bumpiness 3"), "");

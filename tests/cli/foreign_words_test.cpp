@@ -170,7 +170,7 @@ TEST(ForeignWords, AreAnswered) {
     says({"a.png", "-o", "a.png", "--for", "skyrim"}, "; that is a layout of channels: pack-normals --layout skyrim");
     says({"a.png", "-o", "a.webp", "--format", "webp"},
          "; webp is a file type: the name of the output ends in .webp, or --container webp\n");
-    says({"a.png", "-o", "a.dds", "--quality", "90"}, "of blocks, it is --effort");
+    says({"a.png", "-o", "a.dds", "--quality", "90"}, "of blocks it is --effort");
     for (const char* same : {"bc3n", "bc3nm", "3DC", "ATI2"})
         EXPECT_EQ(run(scratch, "bake-normals", {"a.png", "-o", "a.dds", "--format", same}).code, 0) << same;
 }

@@ -178,6 +178,18 @@ TEST_F(ModelOutputs, FilesOfOthersStay) {
     refuses("pack-normals n.gltf -o out/n.gltf --y up", 3, "exists and is not known to be a file of out/n.gltf");
 }
 
+// glTF's viewers read UASTC in models (KHR_texture_basisu); it saves no bytes of the file of itself.
+TEST_F(ModelOutputs, UastcIsReadByViewersAndItsGrowthIsSaid) {
+    const Ran grown = does("pack-normals N804*.glb -o big.glb --format uastc --supercompress none");
+    EXPECT_NE(grown.err.find("big.glb: it has "), std::string::npos) << grown.err;
+    EXPECT_NE(grown.err.find("UASTC saves memory of the GPU"), std::string::npos) << grown.err;
+    EXPECT_EQ(does("pack-normals N804*.glb -o png.glb --y up").err.find("it has "), std::string::npos);
+    for (const char* engine : {"three", "babylon", "playcanvas", "cesium", "gltf-ktx2"}) {
+        const Ran ran = go(std::string("check-normals big.glb --disable N804 --for ") + engine + " --json");
+        EXPECT_EQ(ran.out.find("N113"), std::string::npos) << ran.out;
+    }
+}
+
 TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
     refuses("pack-normals N804*.glb -o x.gltf", 4, "is GLB, and so the output must be called .glb: x.gltf");
     refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");

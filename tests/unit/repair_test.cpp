@@ -46,6 +46,31 @@ TEST(Repair, TakesTheCurveBackAsDoubleArithmeticDoes) {
     EXPECT_GT(of_light.steps.front().degrees, 10.0);
 }
 
+// Gamma 2.2, as image editors have it, is not the curve of sRGB: the middle, 186, would become 125.
+TEST(Repair, TakesAPlainGammaBackThatIsNearlyTheCurve) {
+    Codes light = clean();
+    for (unsigned char& code : light.values)
+        code = static_cast<unsigned char>(std::floor(std::pow(code / 255.0, 1.0 / 2.2) * 255.0 + 0.5));
+    const Texture texture = reference::texture_of(light);
+    const Repaired done = repaired(texture);
+    EXPECT_EQ(plan_of(done), "N302 take gamma 2.200 back");
+    ASSERT_TRUE(done.texture);
+    EXPECT_LT(angle(*done.texture, reference::texture_of(clean())), 0.7) << "what rounding costs";
+}
+
+// A layer of grey at half opacity: flat texels are short then, and no background that was not filled.
+TEST(Repair, ShortFlatTexelsAreNoBackground) {
+    Codes half = clean();
+    for (unsigned char& code : half.values) code = static_cast<unsigned char>((code + 128) / 2);
+    for (std::size_t k = 0; k < half.values.size() / 2; ++k) half.values[k] = k % 3 == 2 ? 191 : 128;
+    const Texture texture = reference::texture_of(half);
+    const Repaired done = repaired(texture);
+    for (const Finding& finding : done.after.findings) EXPECT_NE(finding.rule->id, "N215");
+    RepairOptions options;
+    options.likely = true;
+    EXPECT_EQ(plan_of(repaired(texture, options)).find("N215"), std::string::npos);
+}
+
 TEST(Repair, DividesByAlphaAndKeepsIt) {
     const Texture damaged = reference::texture_of(reference::with_alpha(clean(), true));
     const Codes straight = reference::with_alpha(clean(), false);

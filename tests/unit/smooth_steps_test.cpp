@@ -15,7 +15,7 @@ TEST(Repair, SmoothsTheStepsOfFewValues) {
     for (const int most : {15, 31}) {
         Codes few = clean();
         for (unsigned char& code : few.values)
-            code = static_cast<unsigned char>(std::lround(std::lround(code * most / 255.0) * 255.0 / most));
+            code = static_cast<unsigned char>(std::lround(std::round(code * most / 255.0) * 255.0 / most));
         const Texture texture = reference::texture_of(few);
         EXPECT_EQ(plan_of(repaired(texture)), "");
         RepairOptions options;

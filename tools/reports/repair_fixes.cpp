@@ -28,9 +28,13 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     const std::string model = report.map.empty() ? "" : type_of_model(report);
     if (!step || (!report.map.empty() && model.empty())) return {};
     std::string text(finding.rule->fix);
+    if (is_any_of(finding.rule->id, {"N201", "N209"}) && finding.tone) text = std::string(kRepair) + " -o FIXED";
     if (finding.rule->id == "N308") {
-        text =
-            std::string(kRepair) + (step->certainty == RepairClass::likely ? " --likely --y WANTED" : "") + " -o FIXED";
+        text = std::string(kRepair) +
+               (step->certainty == RepairClass::likely   ? " --likely --y WANTED"
+                : step->certainty == RepairClass::choice ? " --turned left"
+                                                         : "") +
+               " -o FIXED";
         replace_word(text, "WANTED", name_of(kYAxisNames, require.y.value_or(YAxis::up)));
     }
     if (!text.starts_with(kRepair)) return {};
@@ -73,7 +77,12 @@ std::optional<Fix> repair_fix(const Finding& finding, const CheckReport& report,
         return finding.rule->fix.starts_with(kRepair) ? std::optional(Fix{"Export the map again from its source."})
                                                       : std::nullopt;
     }
-    return Fix{std::move(command), true};
+    Fix fix{std::move(command), true};
+    if (fix.text.find("--turned left") != std::string::npos)
+        fix.advice = "If bumps look like dents after that, it was turned to the right: --turned right";
+    if (finding.rule->id == "N303")
+        fix.advice = "With --likely, texels that alpha left without a direction become flat";
+    return fix;
 }
 
 std::optional<Fix> tangent_fix(const Finding& finding, const CheckReport& report) {

@@ -106,7 +106,7 @@ std::string sarif_text(const std::vector<JudgedReport>& reports) {
             result["suppressions"] = {{{"kind", "external"}, {"justification", "listed in the baseline"}}};
             results.push_back(std::move(result));
         }
-        if (!report.error || !report.findings.empty()) continue;
+        if (!judged.is_unreadable() || !report.findings.empty()) continue;
         Json notification;
         notification["level"] = "error";
         notification["message"] = text_json(report.error->reason);

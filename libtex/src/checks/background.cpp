@@ -47,6 +47,7 @@ public:
         const float square = v.square();
         if (is_bleached(v) || (has_z() && Background::is_turned_over(v.x, v.y, v.z))) return true;
         if (!has_z()) return square > kOutside * kOutside;
+        if (is_short_flat(v)) return false;
         return square < kShortest * kShortest || (square > kLongest * kLongest && !is_long_normal(v));
     }
     // Whether this may be a mixture of normals and background.
@@ -64,6 +65,12 @@ private:
         constexpr float kThird = 0.57735f, kCode = 1.5f / 127.5f;
         const auto is = [&](float c) { return std::abs(std::abs(c) - kThird) < kCode; };
         return is(v.x) && is(v.y) && v.x * v.y > 0.0f && (!has_z() || (is(v.z) && (v.z > 0.0f || v.x < 0.0f)));
+    }
+
+    // Whether this is flat once it is a unit vector, as the flat texels of a map are whose vectors were all shortened.
+    static bool is_short_flat(const StoredVector& v) {
+        constexpr float kNear = 3.0f / 127.5f, kLeast = 0.1f;
+        return v.z > kLeast && v.z <= 1.0f && std::abs(v.x) < kNear && std::abs(v.y) < kNear;
     }
 
     // Whether this is what tools make of steep bevels that they do not normalise: it leans, and points outwards.

@@ -18,9 +18,10 @@ namespace tex::inline v1 {
 
 inline constexpr double kLeastBackground = 0.0005;  // share of the texels
 
-// Texels that share a value that is no normal (its length is below 0.5 or above 1.25, or, without a stored z, x and y
-// lie far outside the unit circle; or it is black or white, normalised, or points straight into the surface) and lie
-// together; and texels that nobody sees, because alpha is 0 there. Rules about the vectors leave them out.
+// Texels that share a value that is no normal (its length is below 0.5 or above 1.25, unless it points straight
+// outwards; or, without a stored z, x and y lie far outside the unit circle; or it is black or white, normalised, or
+// points straight into the surface) and lie together; and texels that nobody sees, because alpha is 0 there. Rules
+// about the vectors leave them out.
 struct Background {
     std::array<float, 3> value{};         // x, y and z as stored; z is 0 if it is not stored
     std::int64_t texels = 0;              // that have the value; 0 if there is none

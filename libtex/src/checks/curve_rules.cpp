@@ -15,12 +15,14 @@
 #include "checks/lengths.h"
 #include "checks/thresholds.h"
 #include "checks/tone.h"
+#include "rows/math.h"
 
 namespace tex::inline v1 {
 namespace {
 
 // Thresholds that follow from the nature of the damage and need no fitting.
 constexpr double kOffCentre = 0.03;
+constexpr double kPlainPower = 2.2;                     // which many programs have in place of the curve of sRGB
 constexpr double kLeastDarkened = 0.94;                 // nearer to 1, flat maps with short vectors look alike
 constexpr double kUnitAfterDivision = 0.05;             // the mean error of the lengths
 constexpr std::int64_t kLeastDarkenedTexels = 16 * 16;  // a number that suits a few colours can always be found
@@ -107,11 +109,11 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
 // Whether a plain power of 2.2, which image editors call gamma 2.2, made the map light, and not the curve of sRGB,
 // which is close to it: the middle lies two codes lower, and vectors are nearer to unit length without it.
 bool is_plain_power(const CheckContext& context, const Centre& centre) {
-    constexpr double kPower = 2.2;
-    const double by_power = centre.distance(std::pow(0.5, 1.0 / kPower)), by_srgb = centre.distance(srgb_encoded(0.5));
+    const double by_power = centre.distance(math::pow(0.5, 1.0 / kPlainPower)),
+                 by_srgb = centre.distance(srgb_encoded(0.5));
     if (by_power >= by_srgb || !context.stored.has_z()) return false;
     const auto clamped = [](double c) { return std::clamp(c, 0.0, 1.0); };
-    return length_error(context.stored, [&](double c, int, int) { return std::pow(clamped(c), kPower); }) <
+    return length_error(context.stored, [&](double c, int, int) { return math::pow(clamped(c), kPlainPower); }) <
            length_error(
                context.stored, [&](double c, int, int) { return srgb_decoded(clamped(c)); });
 }
@@ -123,10 +125,6 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
     if (!dark && !light) return check_tone(context, centre, findings);
-    if (light && is_plain_power(context, centre)) {
-        check_tone(context, centre, findings);
-        if (findings.find("N314") != nullptr) return;
-    }
     if (context.stored.has_z()) {
         const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
         const double restored = length_error(context.stored, [&](double c, int, int) {
@@ -140,6 +138,10 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
     finding.figure = (centre.x + centre.y) / 2.0;
     finding.unit = "of full scale";
     finding.confidence = 0.99;
+    if (light && is_plain_power(context, centre)) {
+        finding.message += "; gamma " + decimal(kPlainPower, 1) + " fits better than the curve of sRGB itself";
+        finding.tone = ToneCurve{0.0, 1.0, kPlainPower};
+    }
 }
 
 }  // namespace tex::inline v1

@@ -102,9 +102,8 @@ void check_engine(const CheckContext& context, const EngineNeeds& needs, Finding
     const bool is_other = type == Container::ktx2 && !needs.in_ktx2.empty();
     const std::vector<Encoding>& encodings = is_other ? needs.in_ktx2 : needs.encodings;
     const auto holds = [&](Encoding encoding) { return holds_encoding(texture, swizzle, encoding); };
-    // An image of a model has no name that says its type; what KTX2 alone holds is one.
-    const bool is_read = std::any_of(encodings.begin(), encodings.end(), holds) ||
-                         (!type && std::any_of(needs.in_ktx2.begin(), needs.in_ktx2.end(), holds));
+    // What reads glTF reads its UASTC (KHR_texture_basisu). An image of a model has no name that says its type.
+    const bool is_read = std::any_of(encodings.begin(), encodings.end(), holds) || (!type && holds(Encoding::uastc));
     if (!is_read) {
         reasons.push_back("does not read normals from " + format_text(texture, swizzle) + " but from " +
                           names_of(encodings, kEncodingNames));

@@ -230,7 +230,7 @@ bool are_damaged_vectors(const KindMeasure& m) {
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
-    if (m.level < thresholds::kLeastLevel && !is_surface) return false;
+    if (m.level < thresholds::kLeastLevel && off > thresholds::kBevelsCentred && !is_surface) return false;
     const bool is_level = m.level > thresholds::kLevelShare || m.as(Reading::as_stored).z > thresholds::kUprightMedian;
     if (std::abs(relation_of(m)) > (is_level ? thresholds::kColorRelated : thresholds::kTwoRelated)) return false;
     const double variance = m.deviation_x * m.deviation_x + m.deviation_y * m.deviation_y;

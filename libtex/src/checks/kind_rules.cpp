@@ -116,7 +116,7 @@ bool follows_from_zero(const Stored& stored) {
         const double x = 2.0 * c[0] - 1.0, y = 2.0 * c[1] - 1.0, square = 1.0 - x * x - y * y;
         if (!(square > 0.0)) return;
         const double z = std::sqrt(square);
-        as_stored += std::abs(2.0 * c[2] - 1.0 - z);
+        as_stored += std::abs(std::abs(2.0 * c[2] - 1.0) - z);  // bevels may lean beyond the vertical
         from_zero += std::abs(c[2] - z);
         count += 1.0;
     });

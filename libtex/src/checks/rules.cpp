@@ -227,7 +227,7 @@ constexpr Rule kTextureRules[] = {
      "blocks was mistaken), or the picture was turned by 90 degrees while its vectors stayed. Maps whose structures "
      "are diagonal (rope, braids) fit either way and are not judged.",
      "If channels are exchanged, pack-normals --swizzle gr reads them in their right order. If the picture was turned, "
-     "repair-normals --turned left (or right) turns it back, and --height FILE tells which of all these it was.",
+     "repair-normals --turned left (or right) turns its vectors, too. repair-normals --height FILE finds out which.",
      "N201 N202 N205 N207 N209 N213 N214 N215 N401 N402 N403 N404"},
     {"N309", "turned", damage, error, true, "The picture was turned, but its vectors were not.",
      "Its normals lean by the angle of the turn: what is lit from above on one side is lit from the left on the other. "

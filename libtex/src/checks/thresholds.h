@@ -74,6 +74,7 @@ inline constexpr double kTwoCentred = 0.3;
 inline constexpr double kTwoRelated = 0.5;
 inline constexpr double kLevelShare = 0.25;     // of texels with x and y near 0: few others may follow each other more
 inline constexpr double kLeastLevel = 0.01;     // least such share, unless curl shows a surface; maps: 0.045 and more
+inline constexpr double kBevelsCentred = 0.1;   // slopes to all sides without a level texel between; two hues: 0.18
 inline constexpr double kTwoVariance = 0.3;     // of x and y, unless curl shows a surface; noise over all codes: 0.67
 inline constexpr double kFewBehind = 0.0005;    // share of vectors with z below -0.1
 inline constexpr double kFewNull = 0.0001;      // of vectors without length, if alpha holds heights

@@ -173,6 +173,9 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             }
             if (is_decided) step.certainty = safe;
             break;
+        case decode_srgb:
+            if (finding.tone && z >= 0) return {{finding.rule, undo_tone, safe, -1, -1, {}, finding.tone}, step};
+            break;
         case divide_by_alpha:
             if (format_info(report.format).channels < 4) return {};
             break;

@@ -95,7 +95,8 @@ Result<bool> is_big_endian(const BilWords& words) {
 // Without the number of bits, the size of the file tells it, as in GDAL 3.6.2, for which 32 bits are then floats.
 Result<RawSamples> samples_in(const BilWords& words, const std::optional<double>& no_data, bool is_float,
                               std::int64_t bytes) {
-    const bool is_guessed = words[kBilBits].empty() && (bytes == 2 || bytes == 4);
+    const bool has_gaps = !words[kBilTotalRow].empty() || !words[kBilBandRow].empty();
+    const bool is_guessed = words[kBilBits].empty() && !has_gaps && (bytes == 2 || bytes == 4);
     is_float = is_float || (is_guessed && bytes == 4);
     const Result<std::int64_t> bits = count_in(words, kBilBits, 1, is_float ? 32 : is_guessed ? 8 * bytes : 8);
     if (!bits) return bits.error();

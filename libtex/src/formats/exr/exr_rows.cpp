@@ -109,7 +109,8 @@ struct OpenedPart {
     std::vector<std::string> remarks;
 };
 
-// That a part holds texels for a piece of its picture only, or beyond it: programs differ in what they make of that.
+// Says whether a part holds texels for a piece of its picture only, or beyond it. Programs place such texels
+// differently.
 std::string window_text(const Imf::Header& header) {
     const Imath::Box2i &data = header.dataWindow(), &display = header.displayWindow();
     if (data == display) return {};
