@@ -227,14 +227,15 @@ std::string state_beside(const std::string& file) {
 }
 
 std::set<std::string> files_made_by_builds(const std::string& folder) {
+    constexpr std::size_t kMost = std::size_t{64} << 20;  // of a folder that may be anybody's
     std::set<std::string> made;
     std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-        const std::string name = slashed(entry.path().filename());
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        const std::string name = slashed(entry->path().filename());
         if (!name.starts_with('.') || !name.ends_with(".state")) continue;
         const std::string path = path_from(folder, name);
-        const auto text =
-            check_is_state(path) ? read_text_file(path, kMostOfRecord) : Result<std::string>(std::string());
+        const auto text = check_is_state(path) ? read_text_file(path, kMost) : Result<std::string>(std::string());
         if (!text) continue;
         for (const auto& [output, record] : BuildState::parse(*text).outputs) {
             for (const auto& [file, digest] : record.files)
