@@ -252,7 +252,7 @@ struct Finding {
     int column = 0, row = 0;
     // The rule tried its fix, and this is what the fix would do beside its purpose; then nobody ought to apply it.
     std::string fix_harms = {};
-    std::optional<ToneCurve> tone = {};  // what the channels went through (N313, N314)
+    std::optional<ToneCurve> tone = {};  // what the channels went through (N313, N314, and some N201, N209, N302)
     // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels
     // or the file; nothing if it left out no texels, either.
     std::optional<Marks> marks = {};
