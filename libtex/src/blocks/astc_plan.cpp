@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <tuple>
@@ -230,11 +232,17 @@ const AstcOffsets& astc_color_offsets(int range) {
 }
 
 const AstcPlans& astc_plans(Extent block, int channels) {
-    static std::array<std::once_flag, 2 * 81> once;
-    static std::array<std::unique_ptr<const AstcPlans>, 2 * 81> made;
+    static std::array<std::atomic<const AstcPlans*>, 2 * 81> made;
+    static std::array<std::unique_ptr<const AstcPlans>, 2 * 81> kept;
+    static std::mutex mutex;
     const auto place = static_cast<std::size_t>(81 * (channels - 1) + block.width * 9 + block.height);
-    std::call_once(once[place], [&] { made[place] = std::make_unique<const AstcPlans>(make_plans(block, channels)); });
-    return *made[place];
+    if (const AstcPlans* const plans = made[place].load(std::memory_order_acquire)) return *plans;
+    const std::lock_guard lock(mutex);  // not std::call_once: see guide_of() in encode_astc.cpp
+    if (!kept[place]) {
+        kept[place] = std::make_unique<const AstcPlans>(make_plans(block, channels));
+        made[place].store(kept[place].get(), std::memory_order_release);
+    }
+    return *kept[place];
 }
 
 namespace {

@@ -34,15 +34,17 @@ std::size_t guide_number(Format format, Effort effort, int channels) {
 }
 
 const AstcGuide& guide_of(Format format, Effort effort, int channels) {
-    static std::array<std::once_flag, kGuides> once;
+    static std::mutex mutex;
     static std::array<std::unique_ptr<const AstcGuide>, kGuides> kept;
     const std::size_t at = guide_number(format, effort, channels);
     if (const AstcGuide* const made = made_guides[at].load(std::memory_order_acquire)) return *made;
-    std::call_once(once[at], [&] {
+    // Not std::call_once: where no memory is left, glibc cannot load what lets an exception pass through that.
+    const std::lock_guard lock(mutex);
+    if (!kept[at]) {
         const AstcPlans& plans = astc_plans(format_info(format).block, channels);
         kept[at] = std::make_unique<const AstcGuide>(make_astc_guide(plans, astc_effort(format, effort).reach));
         made_guides[at].store(kept[at].get(), std::memory_order_release);
-    });
+    }
     return *kept[at];
 }
 
