@@ -49,7 +49,8 @@ fi
 for job in "${jobs[@]}"; do wait "$job" || fail "a program cannot be built"; done
 
 "$scratch/c_gcc" >"$scratch/wanted.txt" || fail "the program in C fails"
-grep -q '^N401 error, level 0: either green points up' "$scratch/wanted.txt" || fail "no finding: $(cat "$scratch/wanted.txt")"
+grep -q '^N401 error, level 0: either green points up' "$scratch/wanted.txt" ||
+    fail "no finding: $(cat "$scratch/wanted.txt")"
 [ "$(grep -c '^N' "$scratch/wanted.txt")" = 1 ] || fail "a sound map has findings: $(cat "$scratch/wanted.txt")"
 for program in "$scratch"/c_* "$scratch"/c++* "$scratch"/rust; do
     [ -x "$program" ] || continue
