@@ -160,6 +160,15 @@ TEST_F(RepairNormals, TheReportShowsBothMapsAndTheSteps) {
     EXPECT_EQ(page.find("http://"), std::string::npos);
     EXPECT_EQ(with({"--dry-run", "--likely", "--y", "up", "--report", "again.html", "--threads", "3"}), 3);
     EXPECT_TRUE(scratch_.read("again.html") == page);
+    // Its angle is that of compare-normals.
+    damage("-gamma 2.2", "gamma.png");
+    const Ran mended = shell(scratch_,
+                             "set -e; repair-normals gamma.png -o mended.png --report gamma.html --no-sync;"
+                             "compare-normals gamma.png mended.png --json");
+    EXPECT_EQ(mended.code, 0) << mended.err;
+    const std::string line = lines_of(mended.out).back();
+    const double mean = nlohmann::json::parse(line)["degrees"]["mean"];
+    EXPECT_NE(scratch_.read("gamma.html").find(fmt::format("<td>{:.2f}</td>", mean)), std::string::npos) << line;
     // It is no file that is read or written.
     const std::string clean = scratch_.read("clean.png");
     EXPECT_EQ(go({"clean.png", "--dry-run", "--report", "clean.png"}).code, 2);

@@ -304,11 +304,10 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
                  shown);
     }
     if (into_.file.empty() && parts_for(job.task)[3] == RoughnessPart::smoothness) {
-        job.warn(
-            fmt::format("red is 0, which {} reads as no metal; for a metal, --roughness-into METAL:a keeps the red "
-                        "of its own texture",
-                        job.task.engine->name),
-            shown);
+        job.warn(fmt::format("red is 0, which {} reads as no metal; --roughness-into FILE:a keeps the red of a texture "
+                             "that holds metalness",
+                             job.task.engine->name),
+                 shown);
     }
     if (is_known && packed.levels == 1) {
         job.warn("one level loses no variance, so its roughness is the material's own, unchanged", shown);

@@ -115,7 +115,7 @@ Result<void> add_mesh(const Drawing& from) {
     return {};
 }
 
-// Occlusion as a page has it: what a white plane without any other light shows of it, which has a size of its own.
+// The occlusion as a grey picture for the page: a white plane under ambient light alone. Its size is not the map's.
 Result<std::vector<std::byte>> occlusion_picture(const Drawing& from, const PreviewScene& scene) {
     PreviewOptions options;
     options.size = {std::min(kLargestHtmlLevel, longest(scene.occlusion->extent())), 0};

@@ -80,6 +80,11 @@ std::optional<Fix> repair_fix(const Finding& finding, const CheckReport& report,
     Fix fix{std::move(command), true};
     if (fix.text.find("--turned left") != std::string::npos)
         fix.advice = "If bumps look like dents after that, it was turned to the right: --turned right";
+    if (fix.text.find("--mirrored green") != std::string::npos) {
+        fix.advice =
+            "Green points down in it, which glTF does not allow, and is turned over, too; if bumps look like dents "
+            "after that, red was mirrored instead: --mirrored red";
+    }
     if (finding.rule->id == "N303")
         fix.advice = "With --likely, texels that alpha left without a direction become flat";
     return fix;

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tex/check.h>
 #include <tex/format.h>
+#include <tex/pack.h>
 
 #include "cli/text.h"
 #include "cli/text_file.h"
@@ -60,17 +62,26 @@ Result<std::optional<HtmlMap>> drawn(const std::string& title, const Texture& te
     return std::optional<HtmlMap>();
 }
 
-// Adds the pictures that show both maps, and returns the mean angle between them.
-Result<double> add_pictures(const HtmlMap& before, const HtmlMap& after, HtmlEntry& entry) {
-    const auto compared = compare(before.chain.levels.front(), after.chain.levels.front());
+// The angles between both base levels as compare-normals measures them; nothing if one holds no normals. What is drawn
+// may be smaller, and need not hold unit vectors.
+Result<std::optional<Comparison>> angles_between(const Texture& before, const Texture& after,
+                                                 const Execution& execution) {
+    const auto a = unpack(before, {}, execution), b = unpack(after, {}, execution);
+    if (!a || !b) return std::optional<Comparison>();
+    auto compared = compare(a->levels.front(), b->levels.front(), execution);
     if (!compared) return compared.error();
+    return std::optional(std::move(*compared));
+}
+
+// Adds the pictures that show both maps.
+Result<void> add_pictures(const HtmlMap& before, const HtmlMap& after, const Comparison& compared, HtmlEntry& entry) {
     auto split = split_picture(before, after, {"before", "after"});
     if (!split) return split.error();
-    auto heat = heat_picture(compared->degrees, compared->error.max, "before and after");
+    auto heat = heat_picture(compared.degrees, compared.error.max, "before and after");
     if (!heat) return heat.error();
     entry.extras.push_back(std::move(*split));
     entry.extras.push_back(std::move(*heat));
-    return compared->error.mean;
+    return {};
 }
 
 }  // namespace
@@ -120,9 +131,12 @@ Result<void> RepairReport::add(Job& job, const std::string& name, const Texture&
     entry.body = steps_html(repaired) + left_html(repaired);
     double degrees = 0.0;
     if (*before && after && (*before)->extent == after->extent && sizes_.view > 0) {
-        const auto mean = add_pictures(**before, *after, entry);
-        if (!mean) return mean.error();
-        degrees = *mean;
+        const auto compared = angles_between(source, result, execution);
+        if (!compared) return compared.error();
+        if (*compared) {
+            degrees = (*compared)->error.mean;
+            if (auto added = add_pictures(**before, *after, **compared, entry); !added) return added;
+        }
     }
     const bool is_refused = repaired.has_errors();
     entry.words = is_refused ? "error" : repaired.steps.empty() ? "clean" : "warning";

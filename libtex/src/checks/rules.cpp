@@ -131,8 +131,7 @@ constexpr Rule kTextureRules[] = {
      "Colours or data, not vectors: few are of unit length, with and without the damages that other rules know, R and "
      "G rise and fall together, or do not centre on the middle. No other rule judges the texels.",
      "Give the slot of the normal map the picture that belongs there. If these are normals in other channels, "
-     "--swizzle "
-     "names them, such as dxt5nm.",
+     "--swizzle names them, such as dxt5nm.",
      "N115 N201 N202 N205 N207 N213 N215 N304 N305 N306 N310 N401 N402 N403 N404 N501 N502 N504"},
 
     {"N215", "background", values, warning, true, "The background is not filled.",
@@ -275,8 +274,7 @@ constexpr Rule kTextureRules[] = {
      "check-normals --height FILE. So does a look at the occlusion map or the mesh: bumps are light in one and stand "
      "out of the other. The correlation is 1 if the map fits y=up everywhere, -1 if it fits y=down; from 0.2 or "
      "-0.2 on it counts, if parts of the map agree (confidence 0.99) and at least half of the texels hold normals. "
-     "Lines and "
-     "bevels along the axes show nothing.",
+     "Lines and bevels along the axes show nothing.",
      "pack-normals FILE --keep-length --y-in MEASURED --y WANTED --format SAME -o FIXED", "N112 N404"},
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
      "Maps of both conventions were pasted together, or a part of the map was mirrored. No setting of y is right for "
