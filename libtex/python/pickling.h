@@ -324,6 +324,7 @@ void each_part(CheckReport& o, F& f) {
     f(o.swizzle);
     f(o.kind);
     f(o.kind_confidence);
+    f(o.height_bytes);
     f(o.extent);
     f(o.levels);
     f(o.more_data);

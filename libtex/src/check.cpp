@@ -165,7 +165,7 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         if (auto done = measure(context); !done) return done.error();
         Findings findings(options);
         check_file_rules(context, findings);
-        const PictureKind kind = check_kind_rules(context, findings);
+        const FoundKind found = check_kind_rules(context, findings);
         if (auto done = check_value_rules(context, findings); !done) return done.error();
         if (auto done = check_extra_rules(context, findings); !done) return done.error();
         if (auto done = check_damage_rules(context, findings); !done) return done.error();
@@ -197,7 +197,8 @@ Result<CheckReport> check(const std::string& file, const Texture& texture, const
         report.levels = static_cast<int>(texture.levels.size());
         report.more_data = context.has_vectors && has_more_data(context.stored, context.counts);
         report.y = context.y;
-        set_kind(context, kind, report);
+        set_kind(context, found.kind, report);
+        report.height_bytes = found.height_bytes;
         if (options.mesh != nullptr && context.has_vectors) report.y_on_mesh = y_on_mesh(context);
         if (whole.progress && !whole.progress(1.0)) return Error{ErrorCode::cancelled, {}, "cancelled"};
         return report;

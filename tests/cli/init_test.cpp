@@ -107,6 +107,42 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
     EXPECT_EQ(shell(scratch_, "check-normals --classify art/wall_n.png --report r.html").code, 2);
 }
 
+// A cone of 900 m, as map servers send heights.
+TEST_F(Init, MapTilesAreHeightsInBytes) {
+    scratch_.write("tiles.py",
+                   "from PIL import Image\n"
+                   "a, b = Image.new('RGB', (128, 128)), Image.new('RGB', (128, 128))\n"
+                   "for y in range(128):\n"
+                   "    for x in range(128):\n"
+                   "        h = 1500 - 10 * ((x - 64) ** 2 + (y - 64) ** 2) ** 0.5\n"
+                   "        t, m = int((h + 32768) * 256), int((h + 10000) * 10)\n"
+                   "        a.putpixel((x, y), (t >> 16, t >> 8 & 255, t & 255))\n"
+                   "        b.putpixel((x, y), (m >> 16, m >> 8 & 255, m & 255))\n"
+                   "a.save('land/terrarium.png')\n"
+                   "b.save('land/terrain-rgb.png')\n");
+    std::filesystem::create_directories(scratch_.path("land"));
+    ASSERT_EQ(shell(scratch_, "/usr/bin/python3 tiles.py").code, 0);
+    for (const std::string channel : {"terrarium", "terrain-rgb"}) {
+        SCOPED_TRACE(channel);
+        const std::string file = "land/" + channel + ".png";
+        const Ran kind = shell(scratch_, "check-normals --classify " + file);
+        EXPECT_EQ(kind.out.rfind("heights       " + channel, 0), 0u) << kind.out;
+        const std::string fix = "bake-normals " + file + " --channel " + channel + " --bumpiness auto";
+        EXPECT_NE(shell(scratch_, "check-normals " + file).out.find("fix: " + fix), std::string::npos);
+        const Ran luma = shell(scratch_, "bake-normals " + file + " -o luma.png --no-sync");
+        EXPECT_NE(luma.err.find("--channel " + channel + " reads them so"), std::string::npos) << luma.err;
+        const Ran fixed = shell(scratch_, fix + " --format rgb8 -o fixed.png --no-sync");
+        EXPECT_EQ(fixed.code, 0) << fixed.err;
+        EXPECT_EQ(shell(scratch_, "check-normals fixed.png --fail-on warning").code, 0);
+    }
+    EXPECT_EQ(shell(scratch_, "build-normals --init").code, 0);
+    const std::string manifest = scratch_.read("normals.toml");
+    EXPECT_NE(manifest.find("channel = \"terrarium\""), std::string::npos) << manifest;
+    EXPECT_EQ(shell(scratch_, "build-normals --no-sync").code, 0);
+    const Ran again = shell(scratch_, "build-normals --no-sync --json");
+    EXPECT_NE(again.out.find("\"up_to_date\":[\"build/textures/land/terrarium"), std::string::npos) << again.out;
+}
+
 TEST_F(Init, TheFirstBuildAndTheFirstCheckPass) {
     scratch_.write("art/broken_n.png", "no picture");
     scratch_.add_sample("report.png", "art/colour.png");

@@ -50,6 +50,17 @@ TEST_F(InputKind, PicturesThatAreNoNormalMapAreNamedAsCheckNormalsNamesThem) {
     }
 }
 
+// Short vectors are no occlusion in blue: the words of pack-normals and check-normals are those of one rule.
+TEST_F(InputKind, UnevenAndDamagedVectorsAreCalledThat) {
+    go("convert n.png -fill 'rgb(128,128,128)' -colorize 20% PNG24:short.png; convert n.png -gamma 2.2 PNG24:light.png");
+    const std::string uneven = said("pack-normals", "short.png");
+    EXPECT_TRUE(has(uneven, "its vectors are not of unit length: ") && has(uneven, "(N201)")) << uneven;
+    EXPECT_FALSE(has(uneven, "seems to hold other data")) << uneven;
+    const std::string light = said("pack-normals", "light.png");
+    EXPECT_TRUE(has(light, "(N302); repair-normals mends that") || has(light, "(N314); repair-normals mends that"))
+        << light;
+}
+
 // Unity's detail maps (HDRP) have albedo in R, y in G, smoothness in B and x in A; a mask in R and nothing in B are
 // common in games of the time of DXT5; X-Ray has x, y and z in A, B and G. What the advice says is then right.
 TEST_F(InputKind, NormalsInOtherChannelsAreFound) {

@@ -6,8 +6,12 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <string>
 
 #include <tex/file.h>
+
+#include "checks/byte_heights.h"
 
 namespace tex {
 namespace {
@@ -132,6 +136,22 @@ TEST(HeightBytes, TilesOfMapServersAreRead) {
     // From the bytes that oiiotool prints: 1 187 98 and 133 70 160.
     EXPECT_FLOAT_EQ(texel("terrain_rgb_mapbox.png", HeightChannel::terrain_rgb), 1350.6f);
     EXPECT_FLOAT_EQ(texel("terrarium.png", HeightChannel::terrarium), 1350.625f);
+    EXPECT_EQ(byte_heights(*read_image(folder + "terrain_rgb_mapbox.png")), HeightChannel::terrain_rgb);
+    EXPECT_EQ(byte_heights(*read_image(folder + "terrarium.png")), HeightChannel::terrarium);
+}
+
+TEST(HeightBytes, PicturesAreNoTiles) {
+    for (const char* name : {"bricks", "report", "relief", "strip", "y_axis", "occlusion"}) {
+        const auto picture = read_image(TEX_SOURCE_DIR "/samples/" + std::string(name) + ".png");
+        ASSERT_TRUE(picture) << picture.error().message();
+        EXPECT_EQ(byte_heights(*picture), std::nullopt) << name;
+    }
+    const std::string folder = TEX_SOURCE_DIR "/../shared/data/wild4/colour";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no ../shared/data/wild4";
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const auto picture = read_image(entry.path().string());
+        if (picture && picture->bits == 8) EXPECT_EQ(byte_heights(*picture), std::nullopt) << entry.path();
+    }
 }
 
 }  // namespace

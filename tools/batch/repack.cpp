@@ -54,7 +54,8 @@ PackFileOptions PackCommand::all_options(Job& job) const {
     with.others = extras.inputs(job);
     if (with.mip) extras.apply(*with.mip);
     const OutputOptions own = output.of(job.task.engine);
-    with.source.doubt_y = own.y.has_value();  // otherwise y stays as it is, and the output does not state it
+    // Otherwise y stays as it is, and neither the output nor the user states it.
+    with.source.doubt_y = own.y.has_value() || with.source.unpack.y_axis.has_value();
     with.pack = [this, own, &job](const SourceInfo& info) {
         return own.pack_options(own.format ? *own.format : encoding(info, job.task), info.y_axis, info.y_known);
     };

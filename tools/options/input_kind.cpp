@@ -23,7 +23,10 @@ constexpr Judgement kJudgements[] = {
     {"N222", &JudgedPicture::is_no_map},       {"N220", &JudgedPicture::is_inverted},
     {"N213", &JudgedPicture::is_object_space}, {"N214", &JudgedPicture::is_no_map},
     {"N223", &JudgedPicture::is_x_ray},        {"N215", &JudgedPicture::has_background},
-    {"N219", &JudgedPicture::is_other_blue},
+    {"N219", &JudgedPicture::is_other_blue},   {"N301", &JudgedPicture::is_damaged},
+    {"N302", &JudgedPicture::is_damaged},      {"N303", &JudgedPicture::is_damaged},
+    {"N313", &JudgedPicture::is_damaged},      {"N314", &JudgedPicture::is_damaged},
+    {"N201", &JudgedPicture::is_uneven},
 };
 
 }  // namespace
@@ -33,6 +36,7 @@ std::optional<JudgedPicture> judge_picture(const std::string& path, const ReadOp
     const auto report = check_file(path, {}, read);
     if (!report || report->error) return std::nullopt;
     JudgedPicture judged;
+    judged.height_bytes = report->height_bytes;
     judged.is_vectors = report->swizzle[2] == Component::z;
     judged.has_alpha = report->more_data && format_info(report->format).channels == 4;
     for (const Finding& finding : report->findings) judged.is_vectors &= finding.rule->id != "N206";
@@ -53,6 +57,10 @@ bool names_layout(const JudgedPicture& judged) { return judged.words.find("--swi
 
 std::string no_heights_text(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);
+    if (judged && judged->height_bytes) {
+        const std::string_view channel = name_of(kHeightChannelNames, *judged->height_bytes);
+        return fmt::format("R, G and B are the bytes of heights, as in map tiles; --channel {} reads them so", channel);
+    }
     if (!judged || !judged->is_vectors || judged->is_no_map) return {};
     if (judged->has_alpha) return "this is a normal map; --channel a takes its alpha as heights";
     return "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "

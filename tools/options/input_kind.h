@@ -8,6 +8,7 @@
 #include <string>
 
 #include <tex/file.h>
+#include <tex/height.h>
 
 namespace tex::cli {
 
@@ -18,7 +19,10 @@ struct JudgedPicture {
     bool is_inverted = false;      // blue, or the whole picture
     bool is_x_ray = false;         // x, y and z in A, B and G
     bool is_other_blue = false;    // x and y beside other data
+    bool is_damaged = false;       // by a curve, levels or alpha, which repair-normals undoes
+    bool is_uneven = false;        // vectors of other lengths than 1
     bool has_background = false;   // normals around which a colour that is none is not filled
+    std::optional<HeightChannel> height_bytes = {};  // CheckReport::height_bytes
     bool has_alpha = false;        // data beside the normals, in alpha
     bool is_vectors = false;       // unit vectors are stored in three channels: it is a normal map by intention
 };
@@ -36,7 +40,8 @@ struct JudgedPicture {
 // Added where a manifest makes nothing of such an input.
 inline constexpr const char* kTakeAny = "; check = { inputs = false } in the rule makes it all the same";
 
-// What to say of a picture of heights that is a normal map; empty: nothing.
+// What to say of a picture whose luma would be taken for heights if it is a normal map, or holds the bytes of heights;
+// empty: nothing.
 [[nodiscard]] std::string no_heights_text(const std::string& path, const ReadOptions& read);
 
 }  // namespace tex::cli

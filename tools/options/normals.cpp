@@ -294,6 +294,13 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
             path);
     } else if (judged.is_other_blue && names_layout(judged)) {
         job.warn("these are hardly normals: " + judged.words, path);
+    } else if (judged.is_damaged) {
+        job.warn("the values of its vectors are not as they were: " + judged.words + "; repair-normals mends that", path);
+    } else if (judged.is_uneven && doubts_z) {
+        job.warn("its vectors are not of unit length: " + judged.words +
+                     "; pack-normals --normalize makes them so, and if blue holds other data, such as occlusion, "
+                     "--swizzle rg makes z from x and y",
+                 path);
     } else if (doubts_z && !has_background) {
         job.warn(
             "blue is not the z of its red and green: it seems to hold other data, such as occlusion or heights; "

@@ -107,6 +107,7 @@ Json findings_json(const CheckReport& report, const Requirements& require) {
         json["swizzle"] = layout_name(report.swizzle);
         json["kind"] = name_of(kPictureKindNames, report.kind);
         json["kind_confidence"] = static_cast<float>(report.kind_confidence);
+        if (report.height_bytes) json["height_bytes"] = name_of(kHeightChannelNames, *report.height_bytes);
         json["extent"] = {report.extent.width, report.extent.height};
         json["levels"] = report.levels;
         json["y"] = {{"measured", report.y.y ? Json(name_of_y(*report.y.y)) : Json()},

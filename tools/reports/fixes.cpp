@@ -291,6 +291,11 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
     const std::string_view id = finding.rule->id;
     if (!finding.fix_harms.empty()) return {"No command is printed, because " + finding.fix_harms + "."};
     if (auto fix = tangent_fix(finding, report)) return *fix;
+    if (id == "N214" && report.height_bytes && report.map.empty()) {
+        return {fmt::format("bake-normals {} --channel {} --bumpiness auto --format rgb8 -o FIXED.png",
+                            shell_file(report.file), name_of(kHeightChannelNames, *report.height_bytes)),
+                true, "For the slopes of the ground, bake-normals(1) takes the size of the land: --world-size."};
+    }
     if (auto fix = repair_fix(finding, report, require)) {
         if (id == "N220") fix->advice = inverted_advice(report, require);
         return *fix;

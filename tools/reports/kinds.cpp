@@ -25,7 +25,9 @@ bool holds_normals(const CheckReport& report) {
 
 std::string kind_text(const CheckReport& report) {
     const bool has_normals = holds_normals(report);
-    const std::string layout = has_normals ? layout_name(report.swizzle) : std::string(kNothing);
+    const std::string layout = has_normals           ? layout_name(report.swizzle)
+                               : report.height_bytes ? std::string(name_of(kHeightChannelNames, *report.height_bytes))
+                                                     : std::string(kNothing);
     const std::string_view y = has_normals && report.y.y ? name_of(kYAxisNames, *report.y.y) : kNothing;
     const std::string confidence =
         report.kind == PictureKind::unknown ? std::string(kNothing) : fmt::format("{:.2f}", report.kind_confidence);

@@ -196,6 +196,16 @@ void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale
     }
 }
 
+// Those of the outputs that stay as they are.
+void BuildRun::list_current(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) const {
+    Json names = Json::array();
+    for (std::size_t k = 0; k < task.outputs.size(); ++k) {
+        if (std::any_of(stale.begin(), stale.end(), [k](const Stale& one) { return one.index == k; })) continue;
+        for (const std::string& path : paths_of(task, k).all()) names.push_back(name_of_path(path));
+    }
+    if (!names.empty()) outcome.report["up_to_date"] = std::move(names);
+}
+
 // What stat() says about the files that the outputs are made from, except those that this or another builder makes.
 std::vector<std::optional<FileStamp>> BuildRun::stamps_of(const BuildTask& task) const {
     const auto is_made = [&](const std::string& file) {
@@ -331,6 +341,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
         const auto stamps = stamps_of(task);
         Result<Judgement> judged = judge_.judge(task, recipe);
         if (!judged) return judged.error();
+        list_current(task, judged->stale, outcome);
         if (judged->stale.empty()) {
             ++totals_.current;
             outcome.report["status"] = "current";

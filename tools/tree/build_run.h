@@ -76,6 +76,7 @@ private:
     void store(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
                const Placement& placement, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
+    void list_current(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) const;
     Result<bool> refuses_input(const BuildTask& task, Outcome& outcome);
     Result<Made> make(const BuildTask& task, const std::vector<Stale>& stale, const WriteOptions& write,
                       double& counted, Outcome& outcome);

@@ -66,7 +66,14 @@ std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const s
     return fmt::format("{{ pack = {{ {} }} }}", text);
 }
 
-constexpr const char* kBakeStep = "{ bake = { bumpiness = \"auto\" } }";
+constexpr std::string_view kBakeStep = "{ bake = { bumpiness = \"auto\"";
+
+std::string bake_step(const CheckReport& report) {
+    const std::string channel =
+        report.height_bytes ? fmt::format(", channel = \"{}\"", name_of(kHeightChannelNames, *report.height_bytes))
+                            : std::string();
+    return fmt::format("{}{} }} }}", kBakeStep, channel);
+}
 
 // The pictures of a tree, what they hold, and why no rule is for some of them.
 class Tree {
@@ -193,7 +200,7 @@ private:
         } else if (report.kind == PictureKind::heights ||
                    (report.kind == PictureKind::grey && named_as(file.path) == NamedAs::heights)) {
             if (materials.find(name_beginning(file.path)) == materials.end()) {
-                file.settings = kBakeStep;
+                file.settings = bake_step(report);
                 return;
             }
             why_not_[k] = "heights with a normal map beside them";
@@ -229,7 +236,7 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "# normal-maps-engines(7).\n"
         "outputs = [ { format = \"bc5\", y = \"up\", mips = \"all\" } ]\n";
     for (const InferredRule& rule : rules) {
-        const bool bakes = rule.settings == kBakeStep;
+        const bool bakes = rule.settings.starts_with(kBakeStep);
         text +=
             fmt::format("\n# {} of {} file{}{}.\n[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
                         rule.files.size(), rule.files.size() == 1 ? "" : "s",

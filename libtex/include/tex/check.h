@@ -308,7 +308,7 @@ inline constexpr Named<PictureKind> kPictureKindNames[] = {
     {PictureKind::unknown, "unknown", "cannot be decoded"},
     {PictureKind::normals, "normals", "normals in tangent space"},
     {PictureKind::object_space, "object-space", "normals in object space"},
-    {PictureKind::heights, "heights", "heights: grey with more than 8 bits, or an elevation model"},
+    {PictureKind::heights, "heights", "heights: grey with more than 8 bits, an elevation model, or a map tile"},
     {PictureKind::grey, "grey", "grey of 8 bits: heights, roughness, occlusion or a mask"},
     {PictureKind::colors, "colour", "colours"},
     {PictureKind::data, "data", "other data in several channels, such as occlusion, roughness and metalness"},
@@ -329,6 +329,8 @@ struct CheckReport {
     Swizzle swizzle{};  // guess_swizzle(): what the file states or the texels suggest
     PictureKind kind = PictureKind::unknown;
     double kind_confidence = 0.5;  // that it is that kind, 0.5 to 1
+    // How R, G and B hold heights, if they are the bytes of heights: terrain_rgb or terrarium.
+    std::optional<HeightChannel> height_bytes = {};
     Extent extent;
     int levels = 0;
     bool more_data = false;  // a channel varies that holds no component of the normals: roughness, a mask

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include <tex/format.h>
+
+#include "checks/byte_heights.h"
 #include "checks/layout_fit.h"
 #include "checks/lengths.h"
 
@@ -71,28 +75,38 @@ void add_grey(Findings& findings, double share, const std::string& more = {}) {
     add_share(findings, "N210", "R, G and B are equal in " + percent(share) + " of the texels" + more, share);
 }
 
-PictureKind check_no_map(const CheckContext& context, Findings& findings) {
+FoundKind check_no_map(const CheckContext& context, Findings& findings) {
     const KindMeasure& measure = context.kind_measure;
     const double grey = context.counts.share(Property::grey);
     if (context.stored.has_z() && grey > kGreyEverywhere) {
         add_grey(findings, grey);
-        return PictureKind::grey;
+        return {PictureKind::grey};
     }
     if (!context.stored.has_z() && measure.grey > kGreyEverywhere) {
         add_grey(findings, measure.grey,
                  context.stored.channel(Component::x) == 3 ? ", and A is no x beside them" : "");
-        return PictureKind::grey;
+        return {PictureKind::grey};
     }
-    if (check_surface_data(context, findings)) return PictureKind::data;
+    if (check_surface_data(context, findings)) return {PictureKind::data};
     if (context.stored.is_signed) {
         add_counted(context, findings, "N214", Property::off_length,
                     " are off unit length by more than two codes, and neither x nor y is below 0 anywhere");
-        return PictureKind::colors;
+        return {PictureKind::colors};
     }
     const double unit = measure.as(Reading::as_stored).unit;
+    const FormatInfo format = format_info(context.texture.format);
+    const auto bytes =
+        format.bits == 8 && !format.has_blocks() ? byte_heights(context.base) : std::optional<HeightChannel>();
+    if (bytes) {
+        add_share(findings, "N214",
+                  "R, G and B are the bytes of heights, as in map tiles: " +
+                      std::string(name_of(kHeightChannelNames, *bytes)),
+                  unit);
+        return {PictureKind::heights, bytes};
+    }
     add_share(findings, "N214", evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored),
               unit);
-    return PictureKind::colors;
+    return {PictureKind::colors};
 }
 
 // All texels are the same, and no vector.
@@ -166,19 +180,19 @@ PictureKind check_behind(const CheckContext& context, Findings& findings) {
 
 }  // namespace
 
-PictureKind check_kind_rules(const CheckContext& context, Findings& findings) {
+FoundKind check_kind_rules(const CheckContext& context, Findings& findings) {
     switch (context.kind) {
         case Kind::no_map: return check_no_map(context, findings);
         case Kind::x_lost:
             findings.add("N222", "R and B are constant, and there is no alpha: G holds y, and nothing holds x");
-            return PictureKind::normals;
+            return {PictureKind::normals};
         case Kind::x_ray: findings.add("N223", "A, B and G are unit vectors as x, y and z"); break;
         case Kind::normals:
         case Kind::two_components: break;
     }
     if (!context.has_vectors) {
         const auto& planes = context.base.planes;
-        return std::all_of(planes.begin(), planes.end(), is_constant) ? PictureKind::constant : PictureKind::grey;
+        return {std::all_of(planes.begin(), planes.end(), is_constant) ? PictureKind::constant : PictureKind::grey};
     }
     if (context.stored.has_z()) {
         // Components and lengths that do not matter leave this to be told: floats of heights.
@@ -186,12 +200,12 @@ PictureKind check_kind_rules(const CheckContext& context, Findings& findings) {
         if (grey > kGreyEverywhere && !context.constant) {
             add_grey(findings, grey);
             check_behind(context, findings);
-            return PictureKind::grey;
+            return {PictureKind::grey};
         }
-        if (!context.constant) return check_behind(context, findings);
+        if (!context.constant) return {check_behind(context, findings)};
         check_constant(context, findings);
     }
-    return context.constant ? PictureKind::constant : PictureKind::normals;
+    return {context.constant ? PictureKind::constant : PictureKind::normals};
 }
 
 }  // namespace tex::inline v1

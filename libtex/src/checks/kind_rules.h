@@ -4,10 +4,18 @@
 
 #pragma once
 
+#include <optional>
+
+#include <tex/height.h>
+
 #include "checks/findings.h"
 
 namespace tex::inline v1 {
 
-PictureKind check_kind_rules(const CheckContext& context, Findings& findings);
+struct FoundKind {
+    PictureKind kind = PictureKind::normals;
+    std::optional<HeightChannel> height_bytes = {};  // CheckReport::height_bytes
+};
+FoundKind check_kind_rules(const CheckContext& context, Findings& findings);
 
 }  // namespace tex::inline v1

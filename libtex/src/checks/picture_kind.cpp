@@ -52,7 +52,7 @@ void set_kind(const CheckContext& context, PictureKind found, CheckReport& repor
         }
         case PictureKind::constant: report.kind_confidence = kCertain; return;
         case PictureKind::data: report.kind_confidence = kUnmeasured; return;
-        case PictureKind::heights:
+        case PictureKind::heights: report.kind_confidence = kLikely; return;
         case PictureKind::unknown: return;
     }
 }

@@ -140,7 +140,7 @@ Result<YAxis> measured_y(const NormalMap& map, const SourceOptions& options) {
 std::optional<MapInspector> inspector_for(const SourceOptions& options, const SourceInfo& info, Extent extent) {
     const bool doubts_y = options.doubt_y && (!info.y_known || options.unpack.y_axis);
     if (!options.inspect && !doubts_y) return std::nullopt;
-    return std::optional<MapInspector>(std::in_place, extent, doubts_y);
+    return std::optional<MapInspector>(std::in_place, extent, doubts_y, doubts_y ? Look::as_check : Look::glance);
 }
 
 void inspect(const NormalMap& map, const SourceOptions& options, SourceInfo& info) {

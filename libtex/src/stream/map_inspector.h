@@ -16,7 +16,8 @@
 
 namespace tex::inline v1 {
 
-// What an inspector looks at, of large maps: a glance for warnings, 2^18 texels; or what check() measures, 2^20.
+// What an inspector looks at, of large maps: a glance, 2^18 texels, for background and vectors that face away; or what
+// check() measures, 2^20, where y is in doubt: a weak direction that check() sees must not be one that this overlooks.
 enum class Look { glance, as_check };
 
 // Looks at parts of a map, and keeps their slopes if it measures y.
