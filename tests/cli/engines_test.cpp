@@ -297,7 +297,7 @@ TEST(MigrationPage, EveryCommandOfOursRuns) {
     }
     EXPECT_GE(count, 30u);
     for (const char* program : {"nvcompress", "texconv", "CompressonatorCLI", "toktx", "ktx create", "oiiotool",
-                                "maketx", "convert", "crunch", "XNORMAL", "sbsbaker", "BLENDER"})
+                                "maketx", "convert", "gegl", "crunch", "XNORMAL", "sbsbaker", "BLENDER"})
         EXPECT_NE(text.find(program), std::string::npos) << program;
 }
 
