@@ -5,7 +5,7 @@
 //
 // A normal map has one vector for each place of a surface, and a simplified surface lies elsewhere: from other
 // directions, other points of the original are seen there. The best map has, at each texel, the mean of all normals of
-// the original that are seen there. It is made here from 400 directions around the model, in EXTENT (that of the new
+// the original that are seen there. It is made here from 150 directions around the model, in EXTENT (that of the new
 // map), and then looked at from the 26 of lod_bench, which are not among them. No map that rays or anything else makes
 // can be much better: what it leaves is the shape's.
 //
@@ -39,7 +39,7 @@ using namespace tex;
 using namespace tex::cli;
 using namespace tex::render;
 
-constexpr int kViews = 400;
+constexpr int kViews = 150;
 constexpr double kDegrees = 57.29577951308232;
 
 [[noreturn]] void fail(const std::string& why) {

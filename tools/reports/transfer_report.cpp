@@ -183,8 +183,12 @@ Result<void> TransferReport::add(Job& job, const Entry& entry) {
 Result<void> TransferReport::add_model(Job& job, const std::vector<std::string>& originals) {
     auto entries = lod_entries(job, originals, html_sizes(3 * maps_));
     if (!entries) return entries.error();
-    for (std::size_t k = 0; k < entries->size(); ++k)
-        models_.add(fmt::format("{}: {:06}", job.task.output, k), std::move((*entries)[k]));
+    for (std::size_t k = 0; k < entries->size(); ++k) {
+        HtmlEntry& entry = (*entries)[k];
+        entry.body += warnings_of(job);
+        if (!job.warnings().empty()) entry.words = "warning";
+        models_.add(fmt::format("{}: {:06}", job.task.output, k), std::move(entry));
+    }
     if (entries->empty()) job.warn("is not in the report: the high mesh has none of its materials", job.task.output);
     const std::lock_guard lock(mutex_);
     ++lods_;

@@ -64,7 +64,8 @@ private:
         std::size_t own = 0;
     };
 
-    [[nodiscard]] bool can_change(std::int64_t mesh, std::size_t node) const;
+    [[nodiscard]] bool is_compressed(std::int64_t mesh) const;
+    [[nodiscard]] bool can_change(std::size_t node) const;
     Result<void> change_primitive(JsonValue primitive, JsonNode& node, bool is_copy);
     Result<void> change_vectors(JsonValue accessor, const std::string& key, bool is_target, Change& change);
     Result<void> change_corners(JsonValue primitive, std::size_t vertices, Change& change);
@@ -80,11 +81,16 @@ private:
     int applied_ = 0, left_ = 0;
 };
 
-bool GltfMirrors::can_change(std::int64_t mesh, std::size_t node) const {
+// Such meshes get no tangents.
+bool GltfMirrors::is_compressed(std::int64_t mesh) const {
     const JsonValue primitives = root_["meshes"][static_cast<std::size_t>(mesh)]["primitives"];
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-        if (!primitives[p]["extensions"]["KHR_draco_mesh_compression"].is_null()) return false;
+        if (!primitives[p]["extensions"]["KHR_draco_mesh_compression"].is_null()) return true;
     }
+    return false;
+}
+
+bool GltfMirrors::can_change(std::size_t node) const {
     return root_["nodes"][node]["extensions"]["EXT_mesh_gpu_instancing"].is_null() &&
            animated_.pointed_at.count(static_cast<std::int64_t>(node)) == 0;
 }
@@ -98,10 +104,10 @@ bool GltfMirrors::find(const std::vector<ModelTangents>& tangents) {
     std::map<std::int64_t, std::size_t> shown;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         const auto mesh = nodes[n]["mesh"].count();
-        if (!mesh || wanted.count(*mesh) == 0) continue;
+        if (!mesh || wanted.count(*mesh) == 0 || is_compressed(*mesh)) continue;
         ++shown[*mesh];
         if (!is_mirrored[n] || !nodes[n]["skin"].is_null()) continue;
-        if (can_change(*mesh, n))
+        if (can_change(n))
             meshes_[*mesh].nodes.push_back(n);
         else
             ++left_;

@@ -28,8 +28,8 @@ struct UnmirroredGltf {
 
 // Mirrors the meshes that get tangents in x where the scale of a node, or of one that it is in, mirrors them, and turns
 // the x of that node over: the scene stays as it is. Engines disagree about tangents below a node that mirrors. A mesh
-// that other nodes show as it is gets a copy. Nodes with skins do not count; instances, compression by Draco and
-// animations that point at nodes leave a node as it is. Nothing if no node mirrors. Errors: those of accessors and
+// that other nodes show as it is gets a copy. Nodes with skins and meshes that Draco compresses do not count; instances
+// and animations that point at nodes leave a node as it is. Nothing if no node mirrors. Errors: those of accessors and
 // `load`.
 Result<std::optional<UnmirroredGltf>> apply_mirrors(std::span<const std::byte> file, const GltfChunks& chunks,
                                                     JsonValue root, const LoadBeside& load,
