@@ -20,6 +20,7 @@
 #include "options/high_details.h"
 #include "options/high_meshes.h"
 #include "options/mips.h"
+#include "options/obj_materials.h"
 #include "options/part_ids.h"
 #include "options/rays.h"
 #include "options/tangent_space.h"
@@ -158,15 +159,19 @@ void TransferNormals::add_pictures(const std::vector<std::string>& models, std::
     MeshReadOptions how;
     how.reader = running.read;
     for (const std::string& model : models) {
+        if (pictures_.takes_alpha()) {
+            for (std::string& file : cli::obj_materials(model).files) files_of.push_back(std::move(file));
+        }
         if (!pictures_.takes_own() && !(pictures_.takes_alpha() && cli::has_cutouts(model, how))) continue;
         for (std::string& file : cli::files_beside_model(model, how))
             if (!file.empty()) files_of.push_back(std::move(file));
     }
 }
 
-// If materials get maps, nothing else chooses parts of the low mesh. Guides and reports are for one map.
+// If materials get maps, nothing else chooses parts of the low mesh. Guides are for one map, and so are reports of
+// pictures.
 void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
-    const std::vector<std::string> idle = {"--primitive", "--node", "--uv-set", "--tile", "--cage", "--report"};
+    std::vector<std::string> idle = {"--primitive", "--node", "--uv-set", "--tile", "--cage"};
     MeshReadOptions how;
     how.reader = running.read;
     if (writes_models()) {
@@ -183,6 +188,7 @@ void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
     if (maps_.puts_occlusion_into_model())
         throw cli::UsageError("--occlusion-into", "a model is no output here: give -o x.glb");
     if (!takes_all_materials()) return;
+    idle.emplace_back("--report");
     if (const auto given = command.given_of(idle); !given.empty())
         throw cli::UsageError("--material all and " + given.front() + " contradict each other");
     rules.materials = [how](const cli::Input& input) {
@@ -382,12 +388,13 @@ Result<void> TransferNormals::make_model(cli::Job& job) {
     changes.tangents = std::move(*tangents);
     if (output.of(job.task.engine).y == YAxis::down)
         repeated_.add(job, job.task.input, "green points down in the output, and viewers of glTF expect up");
-    return cli::write_model_output(job, changes);
+    if (auto written = cli::write_model_output(job, changes); !written) return written;
+    if (!report_.is_given()) return {};
+    return report_.add_model(job, high_.names_of(job.task));
 }
 
 Result<void> TransferNormals::process(cli::Job& job) {
-    if (job.task.model_output) return make_model(job);
-    auto made = make(job);
+    auto made = job.task.model_output ? make_model(job) : make(job);
     if (!made && report_.is_given()) report_.add_failure(job, made.error());
     return made;
 }

@@ -76,6 +76,8 @@ Result<void> list_files(const std::string& input, const std::string& output, Pre
     prepared.files.files.push_back({output, {}, true});
     prepared.files.outside = prepared.made.outside;
     prepared.files.compressed = prepared.made.compressed;
+    prepared.files.mirrors = prepared.made.mirrors;
+    prepared.files.left_mirrors = prepared.made.left_mirrors;
     return {};
 }
 

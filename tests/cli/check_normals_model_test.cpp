@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // check-normals with glTF models among its inputs.
 
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.h"
+#include "unit/gltf_files.h"
 
 namespace tex::cli {
 
@@ -25,6 +29,23 @@ TEST_F(CheckNormalsModel, FindingsNameModelMaterialAndImage) {
               std::string::npos)
         << ran.out;
     EXPECT_NE(ran.out.find("\n1 file: 1 error, 0 warnings, 0 notes\n"), std::string::npos) << ran.out;
+}
+
+// The first line of a map says them in full.
+TEST_F(CheckNormalsModel, LongNamesAreSaidOnce) {
+    const std::string file = scratch_.read("N805-double-sided-tangents.glb");
+    std::uint32_t size = 0;
+    std::memcpy(&size, file.data() + 12, 4);
+    auto model = nlohmann::json::parse(file.substr(20, size));
+    const std::string cut = "Material of a scan, \xC3\xBC\xC3\xBC", name = cut + std::string(60, 'x');
+    model["materials"][0]["name"] = name;
+    scratch_.write("long.glb", GltfMaker::glb_of(model.dump(), file.substr(28 + size)));
+    const Ran ran = shell(scratch_, "check-normals long.glb");
+    const std::vector<std::string> lines = lines_of(ran.out);
+    ASSERT_GE(lines.size(), 3u) << ran.out;
+    EXPECT_TRUE(lines[0].starts_with("long.glb: " + name + ": normals: ")) << ran.out;
+    EXPECT_EQ(ran.out.find(name, name.size()), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("\nlong.glb: " + cut + "...: "), std::string::npos) << ran.out;
 }
 
 TEST_F(CheckNormalsModel, ModelsAndMapsGoTogether) {

@@ -290,6 +290,40 @@ TEST_F(Lods, RaysPassWhereAMaskHasHoles) {
             "contradict each other");
 }
 
+// The same with an OBJ file, whose materials are in another file: map_d is 0 in its left half.
+TEST_F(Lods, RaysPassWhereMapDHasHoles) {
+    write_squares("low.glb", {R"({"name":"ground"})"}, "");
+    does("mkdir mtl; convert -size 8x16 xc:black -size 8x16 xc:white +append 'mtl/leaf d.png'");
+    // The floor leans to the left, the leaf to the right.
+    scratch_.write("high.obj",
+                   "mtllib no.mtl mtl/of high.mtl\n"
+                   "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 .1\nv 1 0 .1\nv 1 1 .1\nv 0 1 .1\n"
+                   "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn -.6 0 .8\nvn .6 0 .8\n"
+                   "usemtl floor\nf 1/1/1 2/2/1 3/3/1 4/4/1\nusemtl leaf\nf 5/1/2 6/2/2 7/3/2 8/4/2\n");
+    const auto x_at = [&](const std::string& mtl, const std::string& more, int i) {
+        scratch_.write("high.mtl", "newmtl floor\nd 1.0\nnewmtl leaf\n" + mtl + "\n");
+        does("transfer-normals low.glb high.obj -o n.png --extent 16 --front 1 --back 1 --depfile d --quiet " + more);
+        const auto read = read_texture(scratch_.path("n.png"));
+        return read ? unpack(*read)->levels.front().x.at(i, 8) : 0.0f;
+    };
+    scratch_.write("mtl/of", "");
+    for (const std::string mtl : {"map_d mtl/leaf d.png", "map_d -clamp on -s 1 1 1 -imfchan l mtl\\leaf d.png\r"}) {
+        EXPECT_LT(x_at(mtl, "", 4), -0.5f) << mtl;
+        EXPECT_GT(x_at(mtl, "", 12), 0.5f) << mtl;
+        const std::string files = scratch_.read("d");
+        EXPECT_NE(files.find("high.mtl"), std::string::npos) << files;
+        EXPECT_NE(files.find("leaf"), std::string::npos) << files;
+        EXPECT_GT(x_at(mtl, "--high-alpha off", 4), 0.5f) << mtl;
+    }
+    for (const std::string mtl :
+         {"d 1", "map_d absent.png", "map_d ../mtl/leaf d.png", "map_d", "map_Kd mtl/leaf d.png"})
+        EXPECT_GT(x_at(mtl, "", 4), 0.5f) << mtl;
+    EXPECT_LT(x_at("d 0.4\nmap_d mtl/leaf d.png", "", 12), -0.5f) << "d multiplies map_d";
+    scratch_.write("high.mtl", "newmtl leaf\nd 0.4\n");
+    const auto line = JsonValue::parse(does("transfer-normals low.glb high.obj -o n.png --extent 16 --json").out);
+    EXPECT_NE(line["warnings"].dump().find("as if it were solid"), std::string::npos);
+}
+
 // Red is what transfer-normals writes beside a picture; green and blue stay.
 TEST_F(Lods, OcclusionGoesIntoTheModel) {
     does(

@@ -67,6 +67,9 @@ python3 "$tests/cases.py" --commands | while read -r command; do
     eval "${command//\$all/$all_levels}"
 done
 python3 "$tests/models.py" map.png models
+mirrored=models/node-scale-1-1-1-converted-t-map.glb
+mv "$mirrored" mirrored.glb
+convert-normals mirrored.glb -o "$mirrored" --tangents mikktspace --no-sync --quiet
 
 # Draws the cases.json of this folder with an engine.
 draw() {

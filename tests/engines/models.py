@@ -55,6 +55,8 @@ def kinds():
     yield from both("texCoord 1", uv_set=1)
     yield Kind("texCoord 1", "set 0, turned by 180 degrees", uv_set=1, turn=180)
     yield from both("node scale (-1,1,1)", node={"scale": [-1, 1, 1]}, corner="upper right")
+    # engines.sh has convert-normals write this one again.
+    yield Kind("node scale (-1,1,1), converted", "map", node={"scale": [-1, 1, 1]}, corner="upper right")
     yield from both("half of the UVs mirrored", halves=True)
     yield from both("double-sided, from behind", node={"rotation": [0, 1, 0, 0]}, corner="upper right", dent=True,
                     double_sided=True)

@@ -3,6 +3,7 @@
 
 import json
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -123,6 +124,24 @@ def test_the_command_makes_the_same_maps(tmp_path):
     assert maps["rays"] == report["rays"]
     np.testing.assert_allclose(np.asarray(tex.read_image(out))[..., :3], maps["map"], atol=1e-6)
     np.testing.assert_array_equal(np.asarray(tex.read_image(tmp_path / "ao.exr")).squeeze(), maps["occlusion"])
+
+
+def test_run_writes_models(commands):
+    low, high = SAMPLES / "crate_low.glb", SAMPLES / "crate_high.glb"
+    ran = tex.run("transfer-normals", [low, high, "-o", "lod.glb", "--extent", "64"])
+    assert (ran.code, ran.results[0]["output"]) == (0, "lod.glb")
+    commands("transfer-normals", low, high, "-o", "program.glb", "--extent", "64")
+    assert commands.bytes("lod.glb") == commands.bytes("program.glb")
+    model = tex.read_model("lod.glb")
+    assert [(each["image"], each["scale"]) for each in model["maps"]] == [(0, 1.0)]
+    # A rule of a manifest says so by the name of its output.
+    Path("normals.toml").write_text(
+        'version = 1\n[[rule]]\nmatch = "crate_low.glb"\nname = "out/{stem:-_low}_lod.glb"\n'
+        'steps = [ { transfer = { extent = "64", high = "{dir}/{stem:-_low}_high.glb" } } ]\n')
+    for mesh in (low, high):
+        Path(mesh.name).write_bytes(mesh.read_bytes())
+    assert tex.run("build-normals", []).code == 0
+    assert commands.bytes("out/crate_lod.glb") == commands.bytes("lod.glb")
 
 
 def test_places_are_copies_that_are_not_made():

@@ -3,9 +3,12 @@
 
 #include <tex/pipeline.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -125,6 +128,129 @@ TEST_F(ModelTangentsTest, VerticesWithSeveralTangentsAreCopied) {
           primitive["targets"][0]["POSITION"].get<int>()})
         EXPECT_EQ(now["accessors"][static_cast<std::size_t>(accessor)]["count"], 12) << accessor;
     EXPECT_EQ(now["accessors"][0]["max"], document("m.glb")["accessors"][0]["max"]);
+}
+
+// What the scene shows, corner by corner, with tangents that MikkTSpace makes there or, `stored`, those of the file.
+std::vector<std::vector<float>> scene_of(const Mesh& mesh, bool stored) {
+    std::vector<std::vector<float>> corners;
+    for (const MeshNode& node : mesh.nodes) {
+        for (const MeshPart& part : mesh.parts) {
+            if (part.mesh != node.mesh) continue;
+            const auto placed = in_scene(part, node);
+            EXPECT_TRUE(placed) << placed.error().message();
+            const auto made = make_tangents(*placed);
+            EXPECT_TRUE(made) << made.error().message();
+            for (std::size_t c = 0; placed && made && c < placed->indices.size(); ++c) {
+                const std::size_t v = placed->indices[c];
+                const Float3 p = placed->positions[v], n = placed->normals[v];
+                const Float2 uv = placed->uvs[0][v];
+                const Float4 t = stored ? placed->tangents.at(v) : (*made)[c];
+                std::vector<float> corner = {p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y, t.x, t.y, t.z, t.w};
+                for (float& value : corner) value = std::round(value * 1e4f) / 1e4f + 0.0f;  // and no -0
+                corners.push_back(std::move(corner));
+            }
+        }
+    }
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
+// Whether a node of the file, with all that it is in, mirrors what it shows.
+bool has_mirror(const Mesh& mesh) {
+    return std::any_of(mesh.nodes.begin(), mesh.nodes.end(), [](const MeshNode& node) {
+        const auto& m = node.to_scene;
+        return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+                   m[2] * (m[4] * m[9] - m[5] * m[8]) <
+               0.0;
+    });
+}
+
+// Engines disagree about tangents below nodes that mirror; so the meshes are mirrored instead.
+TEST_F(ModelTangentsTest, NodesNoLongerMirror) {
+    const std::string attributes = R"("attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2})";
+    const std::string matrix = R"({"mesh":0,"matrix":[0,2,0,0, 1,0,0,0, 0,0,1,0, 5,6,7,1]})";
+    const std::string parent = R"({"scale":[1,-2,1],"translation":[1,2,3],"children":[2]})";
+    struct Case {
+        std::string nodes;
+        int mirrors;
+        std::size_t meshes, accessors;  // more of them
+    };
+    for (const Case& one : {
+             Case{R"([{"mesh":0,"scale":[-1,1,1]}])", 1, 0, 1},
+             Case{R"([{"mesh":0,"scale":[1,1,-3],"rotation":[0,0.6,0,0.8]},{"mesh":0}])", 1, 1, 5},
+             Case{"[" + matrix + R"(,{"mesh":0,"scale":[-2,-1,1]}])", 1, 1, 5},
+             Case{"[{\"name\":\"other\"}," + parent + R"(,{"mesh":0,"children":[3]},{"mesh":0,"scale":[2,2,2]}])", 2, 0,
+                  1},
+             Case{R"([{"mesh":0,"scale":[-1,-1,1]}])", 0, 0, 1},
+         }) {
+        for (const std::string mode : {"", R"("mode":5,)"}) {
+            write("m.glb",
+                  strip(1).glb("{" + mode + attributes + R"(,"indices":3})", ",\"nodes\":" + one.nodes + "," + kMap));
+            const auto done = write_model(path("m.glb"), path("out.glb"), made("m.glb"));
+            ASSERT_TRUE(done) << done.error().message();
+            EXPECT_EQ(done->mirrors, one.mirrors) << one.nodes;
+            EXPECT_EQ(done->left_mirrors, 0);
+            EXPECT_FALSE(has_mirror(mesh("out.glb"))) << one.nodes;
+            EXPECT_EQ(scene_of(mesh("out.glb"), true), scene_of(mesh("m.glb"), false)) << one.nodes;
+            const json before = document("m.glb"), after = document("out.glb");
+            EXPECT_EQ(after["meshes"].size(), before["meshes"].size() + one.meshes) << one.nodes;
+            if (mode.empty())  // the strip has seams, where vertices are copied
+                EXPECT_EQ(after["accessors"].size(), before["accessors"].size() + one.accessors) << one.nodes;
+        }
+    }
+}
+
+TEST_F(ModelTangentsTest, MirrorsTakeMorphsWeightsAndAnimationsAlong) {
+    GltfMaker maker = strip(1);
+    const int moved = maker.add(std::vector<float>{1, 2, 3, 1, 2, 3, 1, 2, 3, 1, 2, 3}, "VEC3", 5126);
+    maker.add(std::vector<float>{0.0f, 1.0f}, "SCALAR", 5126, R"(,"min":[0],"max":[1])");
+    const std::string primitive = R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"targets":)"
+                                  R"([{"POSITION":)" +
+                                  std::to_string(moved) + "}]}";
+    const auto nodes = [&](const std::string& channels) {
+        return R"(,"nodes":[{"mesh":0,"scale":[-1,1,1],"weights":[0.5]}],"animations":[{"samplers":[{"input":5,)"
+               R"("output":5}],"channels":[)" +
+               channels + "]}]," + kMap;
+    };
+    // The scale is animated, and so a child shows the mesh, with its weights.
+    write("m.glb", maker.glb(primitive, nodes(R"({"sampler":0,"target":{"node":0,"path":"scale"}},{"sampler":0,)"
+                                              R"("target":{"node":0,"path":"weights"}})")));
+    ASSERT_TRUE(write_model(path("m.glb"), path("out.glb"), made("m.glb")));
+    json now = document("out.glb");
+    EXPECT_EQ(now["nodes"], json::parse(R"([{"scale":[-1,1,1],"children":[1]},{"mesh":0,"scale":[-1,1,1],)"
+                                        R"("weights":[0.5]}])"));
+    EXPECT_EQ(now["animations"][0]["channels"][1]["target"]["node"], 1);
+    EXPECT_EQ(now["animations"][0]["channels"][0]["target"]["node"], 0);
+    const std::size_t target = now["meshes"][0]["primitives"][0]["targets"][0]["POSITION"];
+    EXPECT_EQ(now["accessors"][target]["min"], json::parse("[-1,2,3]"));
+    // A pointer says what the node has, and so it stays.
+    write("m.glb", maker.glb(primitive, nodes(R"({"sampler":0,"target":{"path":"pointer","extensions":)"
+                                              R"({"KHR_animation_pointer":{"pointer":"/nodes/0/scale"}}}})")));
+    const auto left = write_model(path("m.glb"), path("out.glb"), made("m.glb"));
+    ASSERT_TRUE(left) << left.error().message();
+    EXPECT_EQ(left->mirrors, 0);
+    EXPECT_EQ(left->left_mirrors, 1);
+    EXPECT_TRUE(has_mirror(mesh("out.glb")));
+}
+
+// Numbers of a file beside the model change there, in a file of the output.
+TEST_F(ModelTangentsTest, MirrorsChangeBuffersBesideTheModel) {
+    GltfMaker maker = strip(1);
+    maker.uri = R"("uri":"m.bin",)";
+    write("m.bin", maker.binary);
+    write("m.gltf", maker.json(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3})",
+                               R"(,"nodes":[{"mesh":0,"scale":[-1,1,1]}])"));
+    const ModelChanges changes = made("m.gltf");
+    std::filesystem::create_directory(path("out"));
+    for (const std::string name : {"out/m.gltf", "b.gltf"}) {
+        const auto done = write_model(path("m.gltf"), path(name), changes);
+        ASSERT_TRUE(done) << done.error().message();
+    }
+    EXPECT_EQ(read("m.bin"), maker.binary);
+    for (const std::string name : {"out/m.gltf", "b.gltf"}) {
+        EXPECT_FALSE(has_mirror(mesh(name)));
+        EXPECT_EQ(scene_of(mesh(name), true), scene_of(mesh("m.gltf"), false)) << name;
+    }
 }
 
 TEST_F(ModelTangentsTest, TangentsOfOtherTrianglesAreRefused) {

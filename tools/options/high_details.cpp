@@ -91,7 +91,7 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
     Row& alpha = add_files(command, alphas_, "--high-alpha",
                            "where this is below its cutoff, rays pass the high mesh, or its parts with this material; "
                            "may be repeated; off: it is solid");
-    alpha.preset = "of materials with alphaMode MASK (glTF), their own";
+    alpha.preset = "of materials with alphaMode MASK (glTF) or map_d (OBJ), their own";
     alpha.take = [this, take = alpha.take](const std::string& text) {
         if (text == "off")
             is_solid_ = true;
@@ -279,7 +279,7 @@ Result<const Plane<float>*> HighDetailOptions::alpha_of(Job& job, const PartAlph
     if (plane != nullptr) return plane;
     ReadOptions how = job.read_options;
     how.bytes = alpha.bytes;
-    auto read = alpha_in(alpha.file, how, true);
+    auto read = alpha_in(alpha.file, how, !alpha.is_grey);
     if (!read) return read.error().of(alpha.file);
     return plane = &pictures.alphas.emplace_back(std::move(*read));
 }

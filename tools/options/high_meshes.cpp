@@ -14,6 +14,7 @@
 #include "cli/text.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
+#include "options/obj_materials.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -154,6 +155,7 @@ Result<HighParts> HighMeshes::read(const std::vector<std::string>& names, const 
         if (wanted.alpha && is_model(name)) {
             if (auto done = read_alphas(name, how, *mesh, alphas); !done) return done.error().of(name);
         }
+        if (wanted.alpha) read_obj_alphas(name, *mesh, alphas);
         std::map<int, std::shared_ptr<const ModelInput>> maps;
         if (wanted.maps && is_model(name)) {
             if (auto done = read_maps(name, how, *mesh, maps); !done) return done.error().of(name);
@@ -218,6 +220,26 @@ Result<void> HighMeshes::read_alphas(const std::string& name, const MeshReadOpti
         }
     }
     return {};
+}
+
+// The same of OBJ files: map_d makes holes, and d alone blends.
+void HighMeshes::read_obj_alphas(const std::string& name, Mesh& mesh, std::vector<PartAlpha>& alphas) {
+    const ObjMaterials materials = obj_materials(name);
+    for (std::size_t m = 0; m < alphas.size() && !materials.alphas.empty(); ++m) {
+        const auto found = materials.alphas.find(mesh.materials[m].name);
+        if (found == materials.alphas.end()) continue;
+        alphas[m].factor = found->second.factor;
+        if (found->second.picture.empty()) {
+            if (found->second.factor < 1.0) alphas[m].mode = AlphaMode::blend;
+            continue;
+        }
+        alphas[m].mode = AlphaMode::mask;
+        alphas[m].file = found->second.picture;
+        alphas[m].is_grey = true;
+        for (MeshPart& part : mesh.parts) {
+            if (part.material == static_cast<int>(m) && !part.uvs.empty()) part.uvs.push_back(part.uvs.front());
+        }
+    }
 }
 
 // The maps by material; UVs of parts are moved as they say.

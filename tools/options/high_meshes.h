@@ -36,6 +36,7 @@ inline constexpr Named<Match> kMatchNames[] = {
 struct PartAlpha {
     AlphaMode mode = AlphaMode::opaque;
     double cutoff = 0.5, factor = 1.0;  // which alpha is multiplied by
+    bool is_grey = false;               // a picture without alpha holds it itself
     // The picture of a model, if alpha was asked for; neither: it is 1 everywhere.
     std::string file = {};
     std::shared_ptr<const std::vector<std::byte>> bytes = {};
@@ -121,6 +122,7 @@ private:
                                          std::map<int, std::shared_ptr<const ModelInput>>& maps) const;
     [[nodiscard]] static Result<void> read_alphas(const std::string& name, const MeshReadOptions& options, Mesh& mesh,
                                                   std::vector<PartAlpha>& alphas);
+    static void read_obj_alphas(const std::string& name, Mesh& mesh, std::vector<PartAlpha>& alphas);
     [[nodiscard]] Result<HighParts> read(const std::vector<std::string>& names, const ReadOptions& options,
                                          const Wanted& wanted) const;
 

@@ -30,6 +30,17 @@ Json region_json(const Region& region) {
     return json;
 }
 
+// Of several lines about a map, the first one names it. Long names of materials and images are cut in the others.
+std::string line_title(const CheckReport& report, bool is_first) {
+    constexpr std::size_t kLong = 60, kKept = 24;
+    if (is_first || report.map.size() <= kLong) return printable(title_of(report));
+    std::size_t end = kKept;
+    while (end > 0 && (static_cast<unsigned char>(report.map[end]) & 0xc0) == 0x80) --end;  // between characters
+    return printable(report.file + ": " + report.map.substr(0, end)) + "...";
+}
+
+std::string later_title(const CheckReport& report) { return line_title(report, report.findings.empty()); }
+
 }  // namespace
 
 std::string title_of(const CheckReport& report) {
@@ -53,7 +64,7 @@ std::string findings_text(const CheckReport& report, const Requirements& require
         const Rule& rule = *finding.rule;
         std::string statement = statement_of(finding);
         statement.pop_back();
-        text += fmt::format("{}: {} {} {}: {}\n", printable(title_of(report)),
+        text += fmt::format("{}: {} {} {}: {}\n", line_title(report, text.empty()),
                             name_of(kSeverityNames, finding.severity), rule.id, rule.name, printable(statement));
         const Fix fix = fix_of(finding, report, require);
         if (fix.text.empty()) continue;
@@ -70,13 +81,13 @@ std::string pair_text(const CheckReport& report) {
     if (!report.pair) return {};
     const PairEvidence& pair = *report.pair;
     return fmt::format("{}: best fit to the height map: correlation {:.2f}, strength {:.2f}, y {}, offset {}, {}\n",
-                       printable(title_of(report)), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
+                       later_title(report), pair.correlation, pair.strength, name_of_y(pair.y), pair.offset_x,
                        pair.offset_y);
 }
 
 std::string occlusion_text(const CheckReport& report) {
     if (!report.occlusion) return {};
-    return fmt::format("{}: correlation of the occlusion with the surface: {:.2f}\n", printable(title_of(report)),
+    return fmt::format("{}: correlation of the occlusion with the surface: {:.2f}\n", later_title(report),
                        report.occlusion->correlation);
 }
 
@@ -84,7 +95,7 @@ std::string y_text(const CheckReport& report) {
     if (report.error) return {};
     const std::string words = report.y.y ? fmt::format("green points {}", name_of_y(*report.y.y))
                                          : std::string("which way green points does not show");
-    return fmt::format("{}: {}\n", printable(title_of(report)), words);
+    return fmt::format("{}: {}\n", later_title(report), words);
 }
 
 std::string seams_text(const CheckReport& report) {
@@ -93,7 +104,7 @@ std::string seams_text(const CheckReport& report) {
     return fmt::format(
         "{}: seams: {}: {} edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees (a map of "
         "this detail that was baked for its mesh and decoder has a mean under {:.1f})\n",
-        printable(title_of(report)), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.p99,
+        later_title(report), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.p99,
         seams.worst, seams.usual);
 }
 

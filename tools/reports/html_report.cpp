@@ -57,13 +57,16 @@ std::string stage_beside(const HtmlMap& map, std::size_t number, const HtmlRepor
 }
 
 // The stage of the map on its mesh. If the page lacks the mesh or the map's levels, it stays a still picture.
-std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
+// `role`: further attributes of a live stage.
+std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport::MeshNumbers& meshes,
+                       const char* role = "") {
     const HtmlOnMesh& on_mesh = *map.on_mesh;
     const bool live = is_live(map, meshes);
     std::string html = "<div class=\"stage mesh\" style=\"--shape: 1 / 1\"";
     if (live) {
         html += fmt::format(" data-map=\"{}\" data-mesh=\"{}\" data-y=\"{}\" data-file=\"{}\"", number,
                             meshes.at(on_mesh.mesh.get()), name_of(kYAxisNames, on_mesh.y), html_text(on_mesh.map));
+        html += role;
         if (map.beside && !map.beside->missed.empty()) html += fmt::format(" data-missed=\"missed-{}\"", number);
     }
     html += ">\n" + figure(on_mesh.still, map.file);
@@ -76,10 +79,22 @@ std::string mesh_stage(const HtmlMap& map, std::size_t number, const HtmlReport:
     return html + "</div>\n";
 }
 
+// Meshes with their maps, under one light, turned together.
+std::string row_of_meshes(const HtmlEntry& entry, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
+    std::string html = "<div class=\"pair row\">\n";
+    const bool leads = is_live(entry.maps.back(), meshes);
+    for (std::size_t k = 0; k < entry.maps.size(); ++k) {
+        const char* const role = !leads ? "" : k + 1 < entry.maps.size() ? " data-follows" : " data-leads";
+        html += mesh_stage(entry.maps[k], number + k, meshes, role);
+    }
+    return html + "</div>\n";
+}
+
 // The still pictures that the script replaces with canvases: of the map and, below it, of its mesh. `number` is the
 // number of the first map in the page.
 std::string stages(const HtmlEntry& entry, std::size_t number, const HtmlReport::MeshNumbers& meshes) {
     if (entry.maps.empty()) return {};
+    if (entry.in_a_row) return row_of_meshes(entry, number, meshes);
     const HtmlMap& map = entry.maps.front();
     const HtmlPicture& still = map.lit.png.empty() ? map.thumbnail : map.lit;
     const bool has_levels = !map.shown().levels.empty();

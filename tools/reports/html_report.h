@@ -34,6 +34,7 @@ struct HtmlEntry {
     std::string body;                 // facts and figures, as HTML
     std::vector<HtmlMap> maps;        // one; two if they are compared; none if the file could not be read
     std::vector<HtmlPicture> extras;  // pictures that show both maps
+    bool in_a_row = false;            // all maps are on meshes, which stand side by side; the last one leads the others
 };
 
 class HtmlReport {

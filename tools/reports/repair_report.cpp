@@ -12,11 +12,10 @@
 #include <tex/pack.h>
 
 #include "cli/text.h"
-#include "cli/text_file.h"
-#include "cli/usage_error.h"
 #include "reports/findings.h"
 #include "reports/html.h"
 #include "reports/html_pairs.h"
+#include "reports/report_file.h"
 
 namespace tex::cli {
 namespace {
@@ -89,27 +88,13 @@ Result<void> add_pictures(const HtmlMap& before, const HtmlMap& after, const Com
 RepairReport::RepairReport() : page_("repair-normals", {"state", "repairs", "degrees", "left"}) {}
 
 void RepairReport::add(Command& command) {
-    command
-        .output_file(path_, "--report",
-                     "write a page with the maps before and after, under a light that can be moved, and their repairs")
-        .often(5, "write a page with the maps before and after");
-    command.check([&command] {
-        if (command.given("--report") && command.given("--update"))
-            throw UsageError("--report and --update contradict each other: what is skipped is not in the page");
-    });
+    add_report_option(command, path_,
+                      "write a page with the maps before and after, under a light that can be moved, and their repairs",
+                      5, "write a page with the maps before and after");
 }
 
 void RepairReport::check(const std::vector<Task>& tasks, std::vector<NamedFile> others) {
-    if (!is_given()) return;
-    std::vector<std::string> inputs;
-    for (const Task& task : tasks) {
-        inputs.push_back(task.input);
-        for (std::string& file : task.prerequisites()) inputs.push_back(std::move(file));
-        for (const std::string& output : task.outputs()) {
-            if (!output.empty() && output != "-") others.push_back({"the output", output});
-        }
-    }
-    check_document({"--report", path_}, inputs, others);
+    check_report(path_, tasks, std::move(others));
     sizes_ = html_sizes(2 * tasks.size());
 }
 
@@ -170,11 +155,7 @@ void RepairReport::add_failure(const Job& job, const Error& error) {
 }
 
 ExitCode RepairReport::write(Console& console, const std::string& summary) const {
-    if (!is_given()) return ExitCode::done;
-    const auto written = write_document(path_, page_.page(summary));
-    if (written) return ExitCode::done;
-    console.error(written.error().message());
-    return exit_code(written.error().code);
+    return write_report(path_, page_, summary, console);
 }
 
 }  // namespace tex::cli

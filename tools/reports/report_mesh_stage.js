@@ -51,10 +51,10 @@ class MeshStage extends Stage {
     return [labelled("missed texels", select([[mask, "red"], ["", "as they were filled"]], this.missed || "", this.change("missed", (id) => id || null), {name: "missed"}))];
   }
 
-  // The stage of the other mesh follows.
+  // The stages of other meshes follow.
   changed() {
     super.changed();
-    if (this.follower) this.follower.changed();
+    for (const follower of this.followers || []) follower.changed();
   }
 
   // Turns the camera by degrees: to the right and up.
@@ -112,10 +112,12 @@ class MeshStage extends Stage {
 class BesideStage extends MeshStage {
   constructor(root, page) {
     super(root, page);
-    this.leader = root.previousElementSibling.stage || (root.previousElementSibling.stage = makeStage(root.previousElementSibling, page));
-    this.leader.follower = this;
+    const leads = this.leading;
+    this.leader = leads.stage || (leads.stage = makeStage(leads, page));
+    (this.leader.followers = this.leader.followers || []).push(this);
   }
 
+  get leading() { return this.root.previousElementSibling; }
   get what() { return "and the mesh that it was made from"; }
   get camera() {
     const [x, y, z, radius] = this.mesh.place || [0, 0, 0, 1];
@@ -131,4 +133,16 @@ class BesideStage extends MeshStage {
     return this.page.onMesh.draw(this.canvas, {map, mesh, y, kind: "per-vertex", rebuildsZ: true, view, bump: 0, light, point, missed: null});
   }
   tell() { this.caption.textContent = this.stillCaption; }
+}
+
+// A mesh with a map of its own in a row, one of whose meshes leads the others.
+class RowStage extends BesideStage {
+  get leading() { return this.root.parentElement.querySelector("[data-leads]"); }
+  get what() { return "on its mesh"; }
+  fillPanel() {}
+  paint() {
+    const {map, number: mesh, camera: view, leader: {bump, light, point, decoder}} = this;
+    const [, kind, , rebuildsZ] = this.page.decoders.find(([name]) => name === decoder);
+    return this.page.onMesh.draw(this.canvas, {map, mesh, y: this.root.dataset.y, kind, rebuildsZ, view, bump, light, point, missed: null});
+  }
 }

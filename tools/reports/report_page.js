@@ -3,7 +3,7 @@
 
 const kLiveStages = 12;  // the number of canvases that are kept
 
-const makeStage = (root, page) => new ("beside" in root.dataset ? BesideStage : "mesh" in root.dataset ? MeshStage : Stage)(root, page);
+const makeStage = (root, page) => new ("beside" in root.dataset ? BesideStage : "follows" in root.dataset ? RowStage : "mesh" in root.dataset ? MeshStage : Stage)(root, page);
 
 // Gives every stage an empty panel as high as the panel of the first one, which is not drawn yet. Stages that start
 // later then change no height above or below them. `name` is the height's name in the style.
@@ -24,7 +24,7 @@ function makeStages() {
   const roots = [...document.querySelectorAll(".stage[data-map]")];
   if (roots.length === 0) return;
   const page = {maps: JSON.parse(document.getElementById("maps").textContent)};
-  const onMesh = roots.filter((root) => "mesh" in root.dataset && !("beside" in root.dataset)), onPlane = roots.filter((root) => !("mesh" in root.dataset));
+  const onMesh = roots.filter((root) => "mesh" in root.dataset && !("beside" in root.dataset || "follows" in root.dataset)), onPlane = roots.filter((root) => !("mesh" in root.dataset));
   try {
     page.lighting = new Lighting(page.maps);
     if (onMesh.length > 0) {

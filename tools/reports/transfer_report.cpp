@@ -12,12 +12,12 @@
 #include <tex/preview.h>
 
 #include "cli/text.h"
-#include "cli/text_file.h"
-#include "cli/usage_error.h"
 #include "options/missed_texels.h"
 #include "options/rays.h"
 #include "reports/html.h"
+#include "reports/lod_report.h"
 #include "reports/page_mesh.h"
+#include "reports/report_file.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -103,30 +103,18 @@ std::string map_for_shell(const Task& task) {
 
 }  // namespace
 
-TransferReport::TransferReport() : page_("transfer-normals", {"missed", "low", "high", "extent", "format"}) {}
+TransferReport::TransferReport()
+    : page_("transfer-normals", {"missed", "low", "high", "extent", "format"}),
+      models_("transfer-normals", lod_columns()) {}
 
 void TransferReport::add(Command& command) {
-    command
-        .output_file(path_, "--report",
-                     "write a page with the map on the low mesh beside the high one, under a light that can be moved")
-        .often(4, "write a page with the map on the low mesh");
-    command.check([&command] {
-        if (command.given("--report") && command.given("--update"))
-            throw UsageError("--report and --update contradict each other: what is skipped is not in the page");
-    });
+    add_report_option(command, path_,
+                      "write a page with the map on the low mesh beside the high one, under a light that can be moved",
+                      4, "write a page with the map on the low mesh");
 }
 
 void TransferReport::check(const std::vector<Task>& tasks, std::vector<NamedFile> others) {
-    if (!is_given()) return;
-    std::vector<std::string> inputs;
-    for (const Task& task : tasks) {
-        inputs.push_back(task.input);
-        for (std::string& file : task.prerequisites()) inputs.push_back(std::move(file));
-        for (const std::string& output : task.outputs()) {
-            if (output != "-") others.push_back({"the output", output});
-        }
-    }
-    check_document({"--report", path_}, inputs, others);
+    check_report(path_, tasks, std::move(others));
     maps_ = std::max<std::size_t>(1, tasks.size());
 }
 
@@ -192,7 +180,33 @@ Result<void> TransferReport::add(Job& job, const Entry& entry) {
     return {};
 }
 
+Result<void> TransferReport::add_model(Job& job, const std::vector<std::string>& originals) {
+    auto entries = lod_entries(job, originals, html_sizes(3 * maps_));
+    if (!entries) return entries.error();
+    for (std::size_t k = 0; k < entries->size(); ++k) {
+        HtmlEntry& entry = (*entries)[k];
+        entry.body += warnings_of(job);
+        if (!job.warnings().empty()) entry.words = "warning";
+        models_.add(fmt::format("{}: {:06}", job.task.output, k), std::move(entry));
+    }
+    if (entries->empty()) job.warn("is not in the report: the high mesh has none of its materials", job.task.output);
+    const std::lock_guard lock(mutex_);
+    ++lods_;
+    return {};
+}
+
 void TransferReport::add_failure(const Job& job, const Error& error) {
+    if (job.task.model_output) {
+        HtmlEntry model;
+        model.title = printable(job.task.output);
+        model.words = "error";
+        model.row = "<td></td><td></td><td></td><td></td>";
+        model.body = fmt::format("<p><b>{}</b></p>\n", html_text(error.of(job.task.input).message()));
+        models_.add(job.task.output, std::move(model));
+        const std::lock_guard lock(mutex_);
+        ++failed_lods_;
+        return;
+    }
     HtmlEntry page;
     page.title = printable(with_level(job.task.output, 0));
     page.words = "error";
@@ -206,6 +220,11 @@ void TransferReport::add_failure(const Job& job, const Error& error) {
 
 ExitCode TransferReport::write(Console& console) const {
     if (!is_given()) return ExitCode::done;
+    if (lods_ + failed_lods_ > 0) {
+        std::string models = fmt::format("{} model{}", lods_, lods_ == 1 ? "" : "s");
+        if (failed_lods_ > 0) models += fmt::format("; {} failed", failed_lods_);
+        return write_report(path_, models_, models, console);
+    }
     std::int64_t covered = 0, missed = 0;
     std::size_t made = 0, failed = 0;
     for (const auto& [output, texels] : texels_) {
@@ -219,10 +238,7 @@ ExitCode TransferReport::write(Console& console) const {
     if (missed > 0)
         summary += fmt::format("; {} of {} texels are missed", with_commas(static_cast<std::size_t>(missed)), all);
     if (failed > 0) summary += fmt::format("; {} failed", failed);
-    const auto written = write_document(path_, page_.page(summary));
-    if (written) return ExitCode::done;
-    console.error(written.error().message());
-    return exit_code(written.error().code);
+    return write_report(path_, page_, summary, console);
 }
 
 }  // namespace tex::cli

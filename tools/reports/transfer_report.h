@@ -49,6 +49,8 @@ public:
     // Adds a map, with the warnings of its job. Any thread may call these functions. Errors: those of the verbs.
     [[nodiscard]] Result<void> add(Job& job, const Entry& entry);
     void add_failure(const Job& job, const Error& error);
+    // Adds a model that the job has written. A page is of models or of maps.
+    [[nodiscard]] Result<void> add_model(Job& job, const std::vector<std::string>& originals);
 
     // Writes the page, if it is wanted.
     [[nodiscard]] ExitCode write(Console& console) const;
@@ -59,13 +61,14 @@ private:
 
     std::string path_;
     std::size_t maps_ = 1;  // of the run
-    HtmlReport page_;
+    HtmlReport page_, models_;
     // The texels of each output.
     struct Texels {
         std::int64_t covered = 0, missed = 0;
         bool failed = false;
     };
     mutable std::mutex mutex_;  // guards:
+    std::size_t lods_ = 0, failed_lods_ = 0;
     std::map<std::string, Texels> texels_;
 };
 

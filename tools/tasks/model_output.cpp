@@ -302,6 +302,19 @@ Result<void> write_model_output(Job& job, const ModelChanges& changes) {
     warn_of_growth(job, changes);
     warn_of(written->missing, "cannot be found, and so there is no copy beside the output");
     warn_of(written->outside, "is not in its folder, and so there is no copy beside the output");
+    if (written->mirrors > 0) {
+        job.report["mirrors"] = written->mirrors;
+        job.say(
+            fmt::format("{}: nodes that mirrored meshes with these tangents: {}; these meshes are mirrored instead\n",
+                        printable(job.task.output), written->mirrors));
+    }
+    if (written->left_mirrors > 0) {
+        job.warn(
+            fmt::format("nodes still mirror meshes with tangents ({} of them), where three.js, PlayCanvas and filament "
+                        "turn y over: these have instances, or animations point at them",
+                        written->left_mirrors),
+            job.task.output);
+    }
     if (written->compressed > 0) {
         job.warn(
             fmt::format("Draco compresses {} of its primitives, which get no tangents: viewers that make them by "

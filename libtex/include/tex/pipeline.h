@@ -432,7 +432,9 @@ struct ModelPicture {
     PictureUse use = PictureUse::normals;
 };
 
-// Tangents that a part gets.
+// Tangents that a part gets. Where nodes mirror the part, its mesh is mirrored itself, and the node no longer mirrors:
+// the scene stays as it is, and engines that disagree about tangents below such nodes draw it alike. A mesh that other
+// nodes show unmirrored gets a copy.
 struct ModelTangents {
     int mesh = 0, primitive = 0;   // MeshPart::mesh and primitive
     std::vector<Float4> tangents;  // one for each element of MeshPart::indices
@@ -456,6 +458,9 @@ struct ModelFiles {
     std::vector<std::string> missing = {};  // files that the model names and that do not exist: they are not copied
     std::vector<std::string> outside = {};  // URIs of what is not in its folder: they stay as they are
     int compressed = 0;                     // parts that get no tangents, because Draco compresses them
+    int mirrors = 0;                        // nodes that mirrored parts with these tangents, and no longer do
+    int left_mirrors = 0;  // nodes that still do: they have instances, Draco compresses their mesh, or animations point
+                           // at them
 };
 
 // The files that write_model() would write. The bytes of the pictures do not matter, nor do values of tangents.

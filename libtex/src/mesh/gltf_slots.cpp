@@ -2,7 +2,6 @@
 
 #include "mesh/gltf_slots.h"
 
-#include <charconv>
 #include <utility>
 
 #include "mesh/gltf_images.h"
@@ -12,11 +11,6 @@ namespace {
 
 constexpr const char* kTransform = "KHR_texture_transform";
 
-std::string text_of(double value) {
-    char text[40];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 std::string text_of(const JsonNode& node) {
     std::string text;
     node.write(text);
@@ -24,9 +18,9 @@ std::string text_of(const JsonNode& node) {
 }
 
 std::string transform_text(const UvTransform& to) {
-    std::string text = "{\"offset\":[" + text_of(to.offset_x) + ',' + text_of(to.offset_y) + ']';
-    if (to.rotation != 0.0) text += ",\"rotation\":" + text_of(to.rotation);
-    return text + ",\"scale\":[" + text_of(to.scale_x) + ',' + text_of(to.scale_y) + "]}";
+    std::string text = "{\"offset\":[" + json_number(to.offset_x) + ',' + json_number(to.offset_y) + ']';
+    if (to.rotation != 0.0) text += ",\"rotation\":" + json_number(to.rotation);
+    return text + ",\"scale\":[" + json_number(to.scale_x) + ',' + json_number(to.scale_y) + "]}";
 }
 
 // Whether an object below has such a member.
@@ -64,7 +58,7 @@ JsonNode* add_slot(JsonNode& material, const std::string& name, std::int64_t tex
 }
 
 void set_slot(JsonNode& root, JsonNode& node, const GltfSlot& slot, const ModelMap& map) {
-    if (map.scale != slot.scale) map.scale == 1.0 ? node.remove("scale") : node.set("scale", text_of(map.scale));
+    if (map.scale != slot.scale) map.scale == 1.0 ? node.remove("scale") : node.set("scale", json_number(map.scale));
     if (map.uv_set == slot.uv_set && map.uv_transform == slot.transform) return;
     // The extension may name another set of UVs, which counts instead of that of the slot.
     map.uv_set == 0 ? node.remove("texCoord") : node.set("texCoord", std::to_string(map.uv_set));

@@ -20,21 +20,6 @@ bool is_same(const Float4& a, const Float4& b) {
     return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z) && bits(a.w) == bits(b.w);
 }
 
-// Calls use(key, accessor, target) for each accessor that a primitive or a morph target names; target is -1 for the
-// former.
-template <class Use>
-void visit_attributes(JsonValue primitive, const Use& use) {
-    const JsonValue attributes = primitive["attributes"], targets = primitive["targets"];
-    for (const std::string& key : attributes.keys()) {
-        if (attributes[key].count()) use(key, attributes[key], -1);
-    }
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-        for (const std::string& key : targets[k].keys()) {
-            if (targets[k][key].count()) use(key, targets[k][key], static_cast<int>(k));
-        }
-    }
-}
-
 bool is_tangent(const std::string& key, int target) { return target < 0 && key == kTangent; }
 
 // What tells vertices apart: the accessors of all attributes but the tangents.
@@ -45,11 +30,6 @@ std::string key_of(JsonValue primitive) {
             text += std::to_string(target) + ' ' + key + ' ' + std::to_string(*accessor.count()) + '\n';
     });
     return text;
-}
-
-template <class T>
-void put(std::vector<std::byte>& bytes, T value) {
-    for (std::size_t k = 0; k < sizeof(T); ++k) bytes.push_back(static_cast<std::byte>(value >> (8 * k) & 0xff));
 }
 
 }  // namespace
@@ -65,38 +45,14 @@ Result<void> GltfTangents::charge(std::size_t count, std::size_t size) {
 }
 
 Result<void> GltfTangents::change(const std::vector<ModelTangents>& tangents) {
-    count_uses();
     for (const ModelTangents& each : tangents) {
         if (auto added = add(each); !added) return added;
     }
     for (const auto& [key, vertices] : vertices_) {
         if (auto collected = collect(vertices); !collected) return collected;
     }
-    for (const Array& array : arrays_) retire(array);
-    for (Array& array : arrays_) place(array);
+    arrays_.place();
     return {};
-}
-
-void GltfTangents::count_uses() {
-    const auto count = [&](JsonValue value) {
-        if (const auto accessor = value.count()) ++uses_[*accessor];
-    };
-    const JsonValue meshes = root_["meshes"], skins = root_["skins"], animations = root_["animations"];
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const JsonValue primitives = meshes[m]["primitives"];
-        for (std::size_t p = 0; p < primitives.size(); ++p) {
-            count(primitives[p]["indices"]);
-            visit_attributes(primitives[p], [&](const std::string&, JsonValue accessor, int) { count(accessor); });
-        }
-    }
-    for (std::size_t k = 0; k < skins.size(); ++k) count(skins[k]["inverseBindMatrices"]);
-    for (std::size_t k = 0; k < animations.size(); ++k) {
-        const JsonValue samplers = animations[k]["samplers"];
-        for (std::size_t s = 0; s < samplers.size(); ++s) {
-            count(samplers[s]["input"]);
-            count(samplers[s]["output"]);
-        }
-    }
 }
 
 Result<void> GltfTangents::add(const ModelTangents& tangents) {
@@ -109,7 +65,7 @@ Result<void> GltfTangents::add(const ModelTangents& tangents) {
     const auto positions = buffers_.accessor(primitive["attributes"]["POSITION"]);
     if (!positions) return positions.error();
     if (tangents.tangents.empty()) {
-        const auto buffer = find_buffer(primitive);
+        const auto buffer = arrays_.buffer_for(primitive);
         if (!buffer) return buffer.error();
         views_.add(*buffer, {});
         return {};
@@ -174,24 +130,9 @@ std::uint32_t GltfTangents::vertex_for(Vertices& vertices, std::uint32_t vertex,
     return number;
 }
 
-// The buffer of the positions, or, if that only stands for compressed bytes, the first one that has bytes.
-Result<std::size_t> GltfTangents::find_buffer(JsonValue primitive) const {
-    const JsonValue buffers = root_["buffers"];
-    const auto has_bytes = [&](std::size_t k) {
-        return k < buffers.size() && (!buffers[k]["uri"].is_null() || (k == 0 && has_binary_));
-    };
-    const auto accessor = primitive["attributes"]["POSITION"].count();
-    const auto view = root_["accessors"][static_cast<std::size_t>(accessor.value_or(-1))]["bufferView"].count();
-    if (view && has_bytes(views_.buffer_of(*view))) return views_.buffer_of(*view);
-    for (std::size_t k = 0; k < buffers.size(); ++k) {
-        if (has_bytes(k)) return k;
-    }
-    return Error{ErrorCode::unsupported, {}, "has no buffer for tangents"};
-}
-
 Result<void> GltfTangents::collect(const Vertices& vertices) {
     if (vertices.members.empty()) return {};
-    const auto buffer = find_buffer(vertices.members.front().primitive);
+    const auto buffer = arrays_.buffer_for(vertices.members.front().primitive);
     if (!buffer) return buffer.error();
     collect_tangents(vertices, *buffer);
     if (vertices.copies.empty()) return {};
@@ -215,32 +156,22 @@ void GltfTangents::collect_tangents(const Vertices& vertices, std::size_t buffer
             ++own;
         }
     }
-    array.is_in_place = array.like >= 0 && uses_[array.like] == own;
+    array.is_in_place = array.like >= 0 && arrays_.uses(array.like) == own;
     for (const Float4& t : vertices.tangents) {
-        for (const float value : {t.x, t.y, t.z, t.w}) put(array.bytes, std::bit_cast<std::uint32_t>(value));
+        for (const float value : {t.x, t.y, t.z, t.w}) put_number(array.bytes, std::bit_cast<std::uint32_t>(value));
     }
-    arrays_.push_back(std::move(array));
+    arrays_.add(std::move(array));
 }
 
-// Numbers below 65535 (255) fit into two bytes (one): the greatest ones mean something else in glTF.
 void GltfTangents::collect_indices(const Vertices& vertices, const Member& member, std::size_t buffer) {
     Array array;
     array.buffer = buffer;
-    array.is_index = true;
-    array.count = member.corners.size();
     array.like = member.primitive["indices"].count().value_or(-1);
-    array.is_in_place = array.like >= 0 && uses_[array.like] == 1;
+    array.is_in_place = array.like >= 0 && arrays_.uses(array.like) == 1;
     array.uses.push_back({member.node, "indices"});
-    const bool is_long = vertices.tangents.size() > 65535;
-    array.text = std::string(R"({"componentType":)") + (is_long ? "5125" : "5123") + R"(,"type":"SCALAR"})";
-    for (const std::uint32_t corner : member.corners) {
-        if (is_long)
-            put(array.bytes, corner);
-        else
-            put(array.bytes, static_cast<std::uint16_t>(corner));
-    }
+    GltfArrays::set_indices(array, member.corners, vertices.tangents.size());
     if (member.mode != 4) member.node->set("mode", "4");
-    arrays_.push_back(std::move(array));
+    arrays_.add(std::move(array));
 }
 
 // All other attributes get the copies, too.
@@ -253,12 +184,9 @@ Result<void> GltfTangents::collect_attributes(const Vertices& vertices, std::siz
     for (const Member& member : vertices.members) {
         visit_attributes(member.primitive, [&](const std::string& key, JsonValue accessor, int target) {
             if (is_tangent(key, target)) return;
-            JsonNode* const object = target < 0
-                                         ? member.node->member("attributes")
-                                         : member.node->member("targets")->element(static_cast<std::size_t>(target));
             Old& old = all[*accessor.count()];
             old.accessor = accessor;
-            old.uses.push_back({object, key});
+            old.uses.push_back({attributes_node(*member.node, target), key});
         });
     }
     for (auto& [number, old] : all) {
@@ -272,7 +200,7 @@ Result<void> GltfTangents::collect_attributes(const Vertices& vertices, std::siz
         array.count = vertices.tangents.size();
         array.stride = stride == size ? 0 : stride;
         array.like = number;
-        array.is_in_place = uses_[number] == old.uses.size();
+        array.is_in_place = arrays_.uses(number) == old.uses.size();
         array.uses = std::move(old.uses);
         array.bytes.resize(array.count * stride);
         for (std::size_t k = 0; k < array.count; ++k) {
@@ -280,59 +208,9 @@ Result<void> GltfTangents::collect_attributes(const Vertices& vertices, std::siz
             (*values)->copy(from, array.bytes.data() + k * stride);
         }
         text_.member("accessors")->element(static_cast<std::size_t>(number))->write(array.text);
-        arrays_.push_back(std::move(array));
+        arrays_.add(std::move(array));
     }
     return {};
-}
-
-// Counts what views lose by accessors that move.
-void GltfTangents::retire(const Array& array) {
-    if (!array.is_in_place) return;
-    const JsonValue old = root_["accessors"][static_cast<std::size_t>(array.like)];
-    for (const JsonValue view :
-         {old["bufferView"], old["sparse"]["indices"]["bufferView"], old["sparse"]["values"]["bufferView"]}) {
-        if (const auto number = view.count()) ++retired_[*number];
-    }
-}
-
-// A view that nothing uses any more, or a new one.
-std::int64_t GltfTangents::view_for(Array& array) {
-    constexpr const char* kTargets[] = {"34962", "34963"};
-    const std::string target = kTargets[array.is_index ? 1 : 0];
-    for (auto free = retired_.begin(); free != retired_.end(); ++free) {
-        const auto [view, lost] = *free;
-        const JsonValue place = root_["bufferViews"][static_cast<std::size_t>(view)];
-        const bool is_aligned = place["byteOffset"].count().value_or(0) % 4 == 0;
-        if (!is_aligned || views_.buffer_of(view) != array.buffer || !views_.is_own(view, lost)) continue;
-        retired_.erase(free);
-        views_.replace(view, array.bytes);
-        JsonNode& node = *text_.member("bufferViews")->element(static_cast<std::size_t>(view));
-        node.remove("byteStride");
-        if (array.stride > 0) node.set("byteStride", std::to_string(array.stride));
-        node.set("target", target);
-        return view;
-    }
-    const std::string stride = array.stride > 0 ? ",\"byteStride\":" + std::to_string(array.stride) : "";
-    return views_.add(array.buffer, array.bytes, stride + ",\"target\":" + target);
-}
-
-void GltfTangents::place(Array& array) {
-    JsonNode text(array.text);
-    text.remove("byteOffset");
-    text.remove("sparse");
-    text.set("bufferView", std::to_string(view_for(array)));
-    text.set("count", std::to_string(array.count));
-    std::string made;
-    text.write(made);
-    JsonNode& list = *text_.member("accessors");
-    std::int64_t number = array.like;
-    if (array.is_in_place) {
-        list.element(static_cast<std::size_t>(number))->replace(std::move(made));
-    } else {
-        number = static_cast<std::int64_t>(list.size());
-        list.append(std::move(made));
-    }
-    for (const Use& use : array.uses) use.object->set(use.key, std::to_string(number));
 }
 
 }  // namespace tex::inline v1

@@ -13,6 +13,7 @@
 #include <tex/pipeline.h>
 #include <tex/types.h>
 
+#include "mesh/gltf_arrays.h"
 #include "mesh/gltf_buffers.h"
 #include "mesh/gltf_views.h"
 #include "mesh/json.h"
@@ -25,7 +26,7 @@ class GltfTangents {
 public:
     // What it is given must outlive it. `has_binary`: buffer 0 may be the binary chunk.
     GltfTangents(JsonValue root, JsonNode& text, GltfBuffers& buffers, GltfViews& views, bool has_binary)
-        : root_(root), text_(text), buffers_(buffers), views_(views), has_binary_(has_binary) {}
+        : root_(root), text_(text), buffers_(buffers), views_(views), arrays_(root, text, views, has_binary) {}
 
     // Changes primitives, accessors and views. The views refer to this object. Tangents may be empty, to see which
     // buffers change. Errors: those of accessors; bad_option, unsupported as write_model().
@@ -49,22 +50,8 @@ private:
         std::multimap<std::uint32_t, std::uint32_t> copies_of;
         std::list<Member> members;
     };
-    // A member of the text that names an accessor.
-    struct Use {
-        JsonNode* object;
-        std::string key;
-    };
-    // Numbers that become an accessor.
-    struct Array {
-        std::vector<std::byte> bytes;
-        std::size_t count = 0, stride = 0;  // stride 0: elements follow each other
-        bool is_index = false;
-        std::string text;        // of the accessor, without place and count
-        std::int64_t like = -1;  // the accessor that it replaces
-        std::vector<Use> uses;
-        std::size_t buffer = 0;
-        bool is_in_place = false;  // nothing else uses that accessor
-    };
+    using Array = GltfArrays::Array;
+    using Use = GltfArrays::Use;
 
     Result<void> add(const ModelTangents& tangents);
     Result<void> read_corners(Member& member, std::size_t vertices, std::size_t tangents);
@@ -74,23 +61,15 @@ private:
     Result<void> collect_attributes(const Vertices& vertices, std::size_t buffer);
     void collect_tangents(const Vertices& vertices, std::size_t buffer);
     void collect_indices(const Vertices& vertices, const Member& member, std::size_t buffer);
-    Result<std::size_t> find_buffer(JsonValue primitive) const;
-    void retire(const Array& array);
-    std::int64_t view_for(Array& array);
-    void place(Array& array);
-    void count_uses();
 
     JsonValue root_;
     JsonNode& text_;
     GltfBuffers& buffers_;
     GltfViews& views_;
-    bool has_binary_;
     int compressed_ = 0;
-    std::size_t charged_ = 0;                      // bytes that are added
-    std::map<std::string, Vertices> vertices_;     // by the accessors of their attributes
-    std::map<std::int64_t, std::size_t> uses_;     // how often primitives, skins and animations name an accessor
-    std::map<std::int64_t, std::size_t> retired_;  // how many uses a view has lost
-    std::list<Array> arrays_;                      // whose bytes views refer to
+    std::size_t charged_ = 0;                   // bytes that are added
+    std::map<std::string, Vertices> vertices_;  // by the accessors of their attributes
+    GltfArrays arrays_;
 };
 
 }  // namespace tex::inline v1

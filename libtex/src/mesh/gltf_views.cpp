@@ -153,4 +153,46 @@ Result<std::vector<std::byte>> GltfViews::remake(std::size_t buffer, const Chang
     return made;
 }
 
+namespace {
+
+// The media type of a data URI, with its parameters.
+std::string media_type_of_uri(std::string_view uri) {
+    std::string_view type = uri.substr(5, uri.find(',') == std::string_view::npos ? 0 : uri.find(',') - 5);
+    if (type.ends_with(";base64")) type.remove_suffix(7);
+    return std::string(type);
+}
+
+Result<std::vector<std::byte>> bytes_of_buffer(JsonValue root, std::size_t buffer, std::span<const std::byte> binary,
+                                               const LoadBeside& load) {
+    const auto uri = root["buffers"][buffer]["uri"].text();
+    if (!uri && buffer != 0) return bad_gltf("buffer " + std::to_string(buffer) + " has no bytes");
+    if (!uri) return std::vector<std::byte>(binary.begin(), binary.end());
+    if (is_data_uri(*uri)) return decode_data_uri(*uri);
+    auto path = path_of_uri(*uri);
+    if (!path) return path.error();
+    return load(*path);
+}
+
+}  // namespace
+
+Result<FinishedBuffers> finish_buffers(JsonValue root, JsonNode& text, GltfViews& views,
+                                       std::span<const std::byte> binary, const LoadBeside& load) {
+    auto changed = views.finish(text, [&](std::size_t buffer) { return bytes_of_buffer(root, buffer, binary, load); });
+    if (!changed) return changed.error();
+    FinishedBuffers finished;
+    for (ChangedBuffer& buffer : *changed) {
+        const auto uri = root["buffers"][buffer.index]["uri"].text();
+        if (!uri) {
+            finished.binary = std::move(buffer.bytes);
+        } else if (is_data_uri(*uri)) {
+            text.member("buffers")
+                ->element(buffer.index)
+                ->set("uri", '"' + encode_data_uri(media_type_of_uri(*uri), buffer.bytes) + '"');
+        } else {
+            finished.files.push_back(std::move(buffer));
+        }
+    }
+    return finished;
+}
+
 }  // namespace tex::inline v1

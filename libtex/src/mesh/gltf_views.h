@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,5 +89,15 @@ private:
     std::map<std::size_t, Changes> changes_;
     std::vector<std::string> added_;
 };
+
+// What a document has instead of its buffers: those in its text are there already.
+struct FinishedBuffers {
+    std::optional<std::vector<std::byte>> binary;  // the chunk, if that changes
+    std::vector<ChangedBuffer> files;
+};
+
+// GltfViews::finish() of a document with this binary chunk. Errors: those of `load`; bad_data.
+Result<FinishedBuffers> finish_buffers(JsonValue root, JsonNode& text, GltfViews& views,
+                                       std::span<const std::byte> binary, const LoadBeside& load);
 
 }  // namespace tex::inline v1

@@ -15,6 +15,7 @@
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
 #include "mesh/gltf_materials.h"
+#include "mesh/gltf_mirrors.h"
 #include "mesh/gltf_picture_slots.h"
 #include "mesh/gltf_slots.h"
 #include "mesh/gltf_tangents.h"
@@ -30,24 +31,20 @@ std::string_view media_type_of(Container container) {
     return container == Container::jpeg ? "image/jpeg" : "image/png";
 }
 
-// The media type of a data URI, with its parameters.
-std::string media_type_of_uri(std::string_view uri) {
-    std::string_view type = uri.substr(5, uri.find(',') == std::string_view::npos ? 0 : uri.find(',') - 5);
-    if (type.ends_with(";base64")) type.remove_suffix(7);
-    return std::string(type);
-}
-
 // What several users make of one thing: it belongs to the first picture, or to nobody if a user gets none.
 void join(int& owner, int picture) {
     if (owner == kUnused || picture == kNobody) owner = picture;
 }
 
+// Buffers that were changed before, by their paths.
+using ChangedFiles = std::map<std::string, std::vector<std::byte>>;
+
 class GltfWriter {
 public:
     GltfWriter(JsonValue root, JsonText& text, std::span<const std::byte> binary, const LoadBeside& load,
-               const ModelPlace& place, const ModelChanges& changes, GltfBuffers& buffers)
+               const ModelPlace& place, const ModelChanges& changes, GltfBuffers& buffers, const ChangedFiles& changed)
         : root_(root), text_(text.root()), binary_(binary), load_(load), place_(place), changes_(changes),
-          pictures_(changes.pictures), names_(root, place), views_(root),
+          changed_(changed), pictures_(changes.pictures), names_(root, place), views_(root),
           tangents_(root, text_, buffers, views_, !binary.empty()), own_(changes.pictures.size()) {}
 
     Result<void> change();
@@ -74,7 +71,6 @@ private:
     void name_picture(std::size_t picture);
     void change_images(std::size_t picture);
     void change_textures();
-    Result<std::vector<std::byte>> load_buffer(std::size_t buffer) const;
     [[nodiscard]] JsonValue image(std::int64_t index) const { return root_["images"][static_cast<std::size_t>(index)]; }
     [[nodiscard]] std::int64_t image_of(const PictureSlot& slot) const {
         return image_of_texture(root_, slot.slot.texture);
@@ -86,6 +82,7 @@ private:
     const LoadBeside& load_;
     const ModelPlace& place_;
     const ModelChanges& changes_;
+    const ChangedFiles& changed_;
     const std::vector<ModelPicture>& pictures_;
     GltfNames names_;
     GltfViews views_;
@@ -177,32 +174,21 @@ Result<void> GltfWriter::house(std::size_t picture) {
     return {};
 }
 
-Result<std::vector<std::byte>> GltfWriter::load_buffer(std::size_t buffer) const {
-    const auto uri = root_["buffers"][buffer]["uri"].text();
-    if (!uri && buffer != 0) return bad_gltf("buffer " + std::to_string(buffer) + " has no bytes");
-    if (!uri) return std::vector<std::byte>(binary_.begin(), binary_.end());
-    if (is_data_uri(*uri)) return decode_data_uri(*uri);
-    auto path = path_of_uri(*uri);
-    if (!path) return path.error();
-    return load_(*path);
-}
-
+// Files that changed before stay changed.
 Result<void> GltfWriter::change_buffers() {
-    auto changed = views_.finish(text_, [this](std::size_t buffer) { return load_buffer(buffer); });
-    if (!changed) return changed.error();
-    for (ChangedBuffer& buffer : *changed) {
-        const auto uri = root_["buffers"][buffer.index]["uri"].text();
-        if (!uri) {
-            changed_binary_ = std::move(buffer.bytes);
-        } else if (is_data_uri(*uri)) {
-            text_.member("buffers")
-                ->element(buffer.index)
-                ->set("uri", '"' + encode_data_uri(media_type_of_uri(*uri), buffer.bytes) + '"');
-        } else {
-            names_.forget(*path_of_uri(*uri));
-            buffers_.push_back(std::move(buffer));
-        }
+    auto finished = finish_buffers(root_, text_, views_, binary_, load_);
+    if (!finished) return finished.error();
+    changed_binary_ = std::move(finished->binary);
+    buffers_ = std::move(finished->files);
+    for (std::size_t b = 0; b < root_["buffers"].size(); ++b) {
+        const auto path = path_of_uri(root_["buffers"][b]["uri"].text().value_or("data:"));
+        const auto before = path ? changed_.find(*path) : changed_.end();
+        const auto is_this = [b](const ChangedBuffer& buffer) { return buffer.index == b; };
+        if (before != changed_.end() && std::none_of(buffers_.begin(), buffers_.end(), is_this))
+            buffers_.push_back({b, before->second});
     }
+    for (const ChangedBuffer& buffer : buffers_)
+        names_.forget(*path_of_uri(*root_["buffers"][buffer.index]["uri"].text()));
     return {};
 }
 
@@ -336,22 +322,45 @@ Result<void> GltfWriter::change() {
     return {};
 }
 
+Result<WrittenGltf> write_changes(std::span<const std::byte> file, const GltfChunks& chunks, JsonValue root,
+                                  const LoadBeside& load, const ModelPlace& place, const ModelChanges& changes,
+                                  const ChangedFiles& changed) {
+    JsonText text(chunks.json);
+    GltfBuffers buffers(root, chunks.json.size(), chunks.binary, load);
+    GltfWriter writer(root, text, chunks.binary, load, place, changes, buffers, changed);
+    if (auto made = writer.change(); !made) return made.error();
+    auto bytes = with_chunks(file, chunks, text.text(), writer.binary());
+    if (!bytes) return bytes.error();
+    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside(), writer.compressed()};
+}
+
 }  // namespace
 
 Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
                                const ModelChanges& changes) {
-    const auto chunks = gltf_chunks(file);
+    auto chunks = gltf_chunks(file);
     if (!chunks) return chunks.error();
-    const auto document = JsonDocument::parse(chunks->json);
+    auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
     if (auto known = check_asset(document->root()); !known) return known.error();
-    JsonText text(chunks->json);
-    GltfBuffers buffers(document->root(), chunks->json.size(), chunks->binary, load);
-    GltfWriter writer(document->root(), text, chunks->binary, load, place, changes, buffers);
-    if (auto changed = writer.change(); !changed) return changed.error();
-    auto bytes = with_chunks(file, *chunks, text.text(), writer.binary());
-    if (!bytes) return bytes.error();
-    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside(), writer.compressed()};
+    auto unmirrored = apply_mirrors(file, *chunks, document->root(), load, changes.tangents);
+    if (!unmirrored) return unmirrored.error();
+    if (!*unmirrored) return write_changes(file, *chunks, document->root(), load, place, changes, {});
+    chunks = gltf_chunks((*unmirrored)->bytes);
+    if (!chunks) return chunks.error();
+    document = JsonDocument::parse(chunks->json);
+    if (!document) return document.error();
+    const ChangedFiles& changed = (*unmirrored)->files;
+    const LoadBeside load_now = [&](const std::string& path) -> Result<std::vector<std::byte>> {
+        const auto found = changed.find(path);
+        return found == changed.end() ? load(path) : found->second;
+    };
+    const ModelChanges now{changes.pictures, std::move((*unmirrored)->tangents)};
+    auto written = write_changes((*unmirrored)->bytes, *chunks, document->root(), load_now, place, now, changed);
+    if (!written) return written.error();
+    written->mirrors = (*unmirrored)->applied;
+    written->left_mirrors = (*unmirrored)->left;
+    return written;
 }
 
 }  // namespace tex::inline v1

@@ -28,8 +28,9 @@ struct BesideModel {
 struct WrittenGltf {
     std::vector<std::byte> bytes;
     std::vector<BesideModel> beside;
-    std::vector<std::string> outside;  // GltfNames::outside()
-    int compressed = 0;                // ModelFiles::compressed
+    std::vector<std::string> outside;   // GltfNames::outside()
+    int compressed = 0;                 // ModelFiles::compressed
+    int mirrors = 0, left_mirrors = 0;  // those of ModelFiles
 };
 
 // The file with these changes, as model output in pipeline.h describes. If the output is in the folder of the input,

@@ -3,6 +3,7 @@
 #include "mesh/json_text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -200,6 +201,11 @@ std::string JsonText::text() const {
     std::string out(before_);
     root_->write(out);
     return out += after_;
+}
+
+std::string json_number(double value) {
+    char text[40];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string json_string(std::string_view text) {

@@ -65,5 +65,7 @@ private:
 
 // The text as JSON, in quotation marks.
 std::string json_string(std::string_view text);
+// The shortest text of a finite number.
+std::string json_number(double value);
 
 }  // namespace tex::inline v1
