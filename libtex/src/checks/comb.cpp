@@ -111,7 +111,8 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
 }
 
 CombFit CodeComb::fit(const ToneCurve& curve) const {
-    if (codes_ == 0) return {curve};
+    const bool is_shift = curve.gamma == 1.0 && std::abs(curve.white - curve.black - 1.0) < 1e-9;
+    if (codes_ == 0 || is_shift) return {curve};  // a shift leaves no gaps
     constexpr double kHalf = 0.5, kCut = 1e-6;
     const CombCounts rounded = shares_of(curve, kHalf), cut = shares_of(curve, kCut);
     return {curve, std::max(correlation(rounded), correlation(cut)), codes_,
@@ -203,6 +204,10 @@ std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {
         add({-k / 100.0, 1.0 - k / 100.0, 1.0});
         add({k / 100.0, 1.0 + k / 100.0, 1.0});
     }
+    for (int k = 1; k <= 76; ++k) {
+        add({-k / 255.0, 1.0 - k / 255.0, 1.0});
+        add({k / 255.0, 1.0 + k / 255.0, 1.0});
+    }
     for (const int top : {100, 255}) {
         for (int black = 0; black <= 2 * top / 5; ++black) {
             for (int white = 3 * top / 5; white <= top; ++white) {
@@ -224,7 +229,8 @@ int roundness(const ToneCurve& curve) {
     }
     const bool is_plain = curve.black == 0.0 || curve.white == 1.0 || std::abs(curve.black + curve.white - 1.0) < 1e-9;
     const auto is_round = [&](double step) { return is_multiple(curve.black, step) && is_multiple(curve.white, step); };
-    if (std::abs(curve.white - curve.black - 1.0) < 1e-9) return is_multiple(curve.black, 0.05) ? 0 : 1;
+    if (std::abs(curve.white - curve.black - 1.0) < 1e-9)
+        return is_multiple(curve.black, 0.05) ? 0 : is_multiple(curve.black, 0.01) ? 1 : 2;
     if (is_round(0.05)) return is_plain ? 0 : 1;
     return is_round(0.01) && is_plain ? 1 : 2;
 }

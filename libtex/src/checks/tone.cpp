@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "checks/comb.h"
@@ -152,6 +153,23 @@ double least_error(const ToneTexels& texels) {
 
 }  // namespace
 
+namespace {
+
+// What the codes show beyond doubt, wherever the middle is, and whatever z says: of maps whose vectors were no unit
+// vectors, or that lean.
+std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, const ToneTexels& texels,
+                                 double as_stored) {
+    constexpr double kFarOff = 0.06, kSureScore = 0.8;
+    std::vector<ToneCurve> round = usual_tones(centre, kFarOff);
+    std::erase_if(round, [](const ToneCurve& curve) { return roundness(curve) > 1; });
+    const CombFit in_codes = comb.best(round);
+    if (!in_codes.is_proof() || in_codes.score < kSureScore) return std::nullopt;
+    const ZForm form = likeliest_form(in_codes.curve, texels);
+    return ToneFit{in_codes.curve, as_stored, error_of(in_codes.curve, texels, form), as_stored, true};
+}
+
+}  // namespace
+
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background) {
     const double middle = (centre.x + centre.y) / 2.0, off = std::abs(middle - 0.5);
     const bool is_one_curve = off > kOffMiddle && off > std::abs(centre.x - centre.y);
@@ -160,11 +178,13 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     const ToneTexels texels = tone_texels(stored, background);
     const double as_stored = least_error(texels);
     const std::vector<ToneCurve> usual = usual_tones(centre);
-    const CombFit in_codes = CodeComb(stored, background).best(usual);
+    const CodeComb comb(stored, background);
+    const CombFit in_codes = comb.best(usual);
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
         if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
+    if (const auto sure = sure_tone(comb, centre, texels, as_stored)) return sure;
     if (as_stored < kLeastToneError) return std::nullopt;
     const BestTone fits = best_of_forms(middle, true, texels);
     const ToneCandidate& best = fits.best();
@@ -211,6 +231,20 @@ std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& ce
     const double error = error_of(in_codes.curve, texels, form);
     if (error > kBetter * as_stored) return std::nullopt;
     return ToneFit{in_codes.curve, as_stored, error, as_stored, true};
+}
+
+int few_colors(const Stored& stored) {
+    constexpr std::size_t kMostColors = 256;
+    const auto& planes = stored.image->planes;
+    if (planes.size() < 3 || stored.extent().texels() < kLeastToneTexels) return 0;
+    std::set<std::array<float, 3>> colors;
+    for (int j = 0; j < stored.extent().height; ++j) {
+        for (int i = 0; i < stored.extent().width; ++i) {
+            colors.insert({planes[0].at(i, j), planes[1].at(i, j), planes[2].at(i, j)});
+            if (colors.size() > kMostColors) return 0;
+        }
+    }
+    return static_cast<int>(colors.size());
 }
 
 int few_levels(const Stored& stored) {

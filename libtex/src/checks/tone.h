@@ -32,6 +32,9 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
 // A change of levels that the histogram of 8 bits shows, in a map that leans, so that the middle shows nothing.
 std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& centre, const Background* background);
 
+// The number of colours of a picture with a palette, 256 or less; 0 if there are more, or few texels.
+int few_colors(const Stored& stored);
+
 // The number of values that x and y take, at most, if they are codes of 8 bits that lie 4 or more from each other, as
 // after a reduction to few levels; 0 if they do not.
 int few_levels(const Stored& stored);

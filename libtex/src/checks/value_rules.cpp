@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "checks/background_fill.h"
 #include "checks/centre.h"
@@ -71,6 +73,10 @@ void check_lengths(const CheckContext& context, Findings& findings) {
             finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
         }
         find_levels_of(context, is_stretched, finding);
+        const int colors = finding.tone ? 0 : few_colors(context.stored);
+        if (colors > 0)
+            finding.message += "; the picture has " + std::to_string(colors) +
+                               " colours, as with a palette, and what lay between them does not come back";
     }
     const double below = counts.share(Property::z_below);
     if (below > kBelowShare && counts.share(Property::z_behind) > kFarBelow * below) {
