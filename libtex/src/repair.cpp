@@ -16,6 +16,7 @@
 #include "fields/field_check.h"
 #include "fields/repair_fields.h"
 #include "repairs/green_parts.h"
+#include "repairs/outcome.h"
 #include "repairs/repair_plan.h"
 #include "repairs/stored_levels.h"
 #include "repairs/texel_steps.h"
@@ -29,61 +30,12 @@ namespace {
 constexpr double kFirstCheck = 0.5;  // of the progress
 constexpr int kMostStepsOfRow = 2;   // blue, green, red order takes one step, other orders two
 
-const Finding* find_finding(const CheckReport& report, std::string_view id) {
-    for (const Finding& finding : report.findings) {
-        if (finding.rule->id == id) return &finding;
-    }
-    return nullptr;
-}
-
 bool names(const std::vector<std::string>& list, const Rule& rule) {
     return std::any_of(list.begin(), list.end(), [&](const std::string& name) { return find_rule(name) == &rule; });
 }
 
 bool takes_part(const RepairOptions& options, const Rule& rule) {
     return (options.only.empty() || names(options.only, rule)) && !names(options.skip, rule);
-}
-
-// Whether the finding is gone, and not merely left out because another one explains it. What a picture seems to be
-// changes with every step.
-bool is_gone(const CheckReport& report, const RepairStep& step) {
-    const std::string_view id = step.rule->id;
-    if (id == "N214" || id == "N213") return find_finding(report, id) == nullptr;
-    // Channels go back first where levels were changed, too, and where x and y were exchanged beside z.
-    constexpr std::string_view kTones[] = {"N301", "N302", "N313", "N314"};
-    const bool is_of_z = id == "N308" && step.certainty == RepairClass::safe && step.kind == RepairKind::exchange;
-    return std::none_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
-        if (finding.rule->id == id) return !is_of_z || finding.unit == "component";
-        if (is_of_z && std::find(std::begin(kTones), std::end(kTones), finding.rule->id) != std::end(kTones))
-            return false;
-        return finding.severity == Severity::error && finding.rule->explains.find(id) != std::string_view::npos;
-    });
-}
-
-// Whether a step of this kind undoes what happened to normals. Vectors can be made unit, and turned, in any picture.
-bool proves(RepairKind kind) {
-    return kind != RepairKind::bake_heights && kind != RepairKind::straighten && kind != RepairKind::fill_background &&
-           kind != RepairKind::normalize && kind != RepairKind::rebuild_levels;
-}
-
-// The angle between the normals of both base levels; 0 if one has none.
-Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution) {
-    const auto base = [&](const Texture& from) -> Result<NormalMap> {
-        Texture one;
-        one.format = from.format;
-        one.levels = {from.levels.front()};
-        one.swizzle = from.swizzle;
-        one.y_axis = from.y_axis;
-        one.normal_encoding = from.normal_encoding;
-        auto chain = unpack(one, {}, execution);
-        if (!chain) return chain.error();
-        return std::move(chain->levels.front());
-    };
-    const auto a = base(before), b = base(after);
-    if (!a || !b) return 0.0;
-    auto compared = compare(*a, *b, execution);
-    if (!compared) return compared.error();
-    return compared->error.mean;
 }
 
 // The texture as it stands, and how it looks to the rules.
@@ -279,7 +231,9 @@ private:
         }
         auto report = check(file_, state.texture, checks_, execution_);
         if (!report) return report.error();
-        if (!is_gone(*report, step) || contradicts(step, *report)) return std::optional<State>();
+        const Finding* const before = find_finding(report_, step.rule->id);
+        if (!is_gone(*report, step, before ? before->figure : 0.0) || contradicts(step, *report))
+            return std::optional<State>();
         const auto degrees = mean_change(current(), state.texture, execution_);
         if (!degrees) return degrees.error();
         step.degrees = *degrees;
@@ -339,8 +293,9 @@ private:
         const bool is_by_heights = step.rule->id == "N601";
         const bool turns = step.kind == RepairKind::turn_left || step.kind == RepairKind::turn_right;
         if (turns && options_.turned && !is_by_heights) return false;
-        if (!turns && !is_by_heights && (step.kind != RepairKind::exchange || step.certainty != RepairClass::likely))
-            return false;
+        const bool exchanges_xy =
+            step.kind == RepairKind::exchange && step.rule->id == "N308" && step.certainty == RepairClass::likely;
+        if (!turns && !is_by_heights && !exchanges_xy) return false;
         const std::optional<YAxis> wanted =
             options_.checks.require.y ? options_.checks.require.y : std::optional(current().y_axis);
         if (turns || is_by_heights)

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
-#include "checks/tone.h"
+#include "checks/tone_texels.h"
+#include "rows/math.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -15,8 +17,8 @@ constexpr int kCombRadius = 6;          // of the mean about a code
 constexpr double kLeastCombMean = 8.0;  // texels
 constexpr double kMostRelative = 2.5;   // flat texels alone are no comb
 constexpr int kCombEnds = 3;            // cut off codes gather at the ends
+constexpr double kLeastGaps = 16.0;     // of some thousand curves, chance suits none
 constexpr double kLeastCombScore = 0.3, kLeastCombProof = 6.0;
-constexpr double kCombMiddle = 0.02;
 constexpr double kLeastOpaque = 0.05;  // share of texels
 
 using CombCounts = CodeComb::Counts;
@@ -55,12 +57,22 @@ double share_of_ones(const Plane<float>& alpha) {
     return ones / static_cast<double>(alpha.extent().texels());
 }
 
+// From the darkest code that a curve makes to the one after the lightest. What lies beyond shows where a map ends, and
+// nothing about the curve.
+std::pair<std::size_t, std::size_t> made_codes(const CombCounts& shares) {
+    const auto is_used = [](double share) { return share > 0.0; };
+    const auto first = std::find_if(shares.begin(), shares.end(), is_used) - shares.begin();
+    const auto last = std::find_if(shares.rbegin(), shares.rend(), is_used) - shares.rbegin();
+    return {static_cast<std::size_t>(first), shares.size() - static_cast<std::size_t>(last)};
+}
+
 bool is_multiple(double value, double of) { return std::abs(value / of - std::floor(value / of + 0.5)) < 1e-6; }
 
 }  // namespace
 
 bool CombFit::is_proof() const {
-    return score >= kLeastCombScore && score * std::sqrt(static_cast<double>(codes)) >= kLeastCombProof;
+    return gaps >= kLeastGaps ||
+           (score >= kLeastCombScore && score * std::sqrt(static_cast<double>(codes)) >= kLeastCombProof);
 }
 
 CodeComb::CodeComb(const Stored& stored, const Background* background) {
@@ -91,6 +103,7 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
         for (std::size_t k = kCombEnds; k + kCombEnds < counts.size(); ++k) {
             channel.counts[k] = means[k] >= kLeastCombMean;
             if (!channel.counts[k]) continue;
+            channel.is_empty[k] = counts[k] == 0.0;
             channel.relative[k] = std::min(counts[k] / means[k], kMostRelative);
             ++codes_;
         }
@@ -98,22 +111,45 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
 }
 
 CombFit CodeComb::fit(const ToneCurve& curve) const {
-    if (codes_ == 0) return {curve};
+    const bool is_shift = curve.gamma == 1.0 && std::abs(curve.white - curve.black - 1.0) < 1e-9;
+    if (codes_ == 0 || is_shift) return {curve};  // a shift leaves no gaps
     constexpr double kHalf = 0.5, kCut = 1e-6;
-    return {curve, std::max(correlation(shares_of(curve, kHalf)), correlation(shares_of(curve, kCut))), codes_};
+    const CombCounts rounded = shares_of(curve, kHalf), cut = shares_of(curve, kCut);
+    return {curve, std::max(correlation(rounded), correlation(cut)), codes_,
+            std::max(gap_evidence(rounded), gap_evidence(cut))};
+}
+
+// A histogram may be rough, but one texel in a gap shows that there is none. Where few values are used at all, gaps
+// show nothing, and neither do codes beyond the darkest and the lightest.
+double CodeComb::gap_evidence(const Counts& shares) const {
+    constexpr double kCostOfFilled = 6.0, kMostByChance = 0.35;
+    const auto [first, end] = made_codes(shares);
+    double empty = 0.0, filled = 0.0, empty_elsewhere = 0.0, elsewhere = 0.0;
+    for (const Channel& channel : channels_) {
+        for (std::size_t k = first; k < end; ++k) {
+            if (!channel.counts[k]) continue;
+            const double is_empty = channel.is_empty[k] ? 1.0 : 0.0;
+            (shares[k] == 0.0 ? empty : empty_elsewhere) += is_empty;
+            (shares[k] == 0.0 ? filled : elsewhere) += shares[k] == 0.0 ? 1.0 - is_empty : 1.0;
+        }
+    }
+    const double by_chance = (empty_elsewhere + 0.5) / (elsewhere + 1.0);
+    return by_chance > kMostByChance ? 0.0 : -empty * math::log(by_chance) - kCostOfFilled * filled;
 }
 
 double CodeComb::correlation(const Counts& shares) const {
+    const auto [first, end] = made_codes(shares);
     double product = 0.0, squares = 0.0, squares_of_shares = 0.0;
     for (const Channel& channel : channels_) {
         double mean = 0.0, mean_share = 0.0, n = 0.0;
-        for (std::size_t k = 0; k < shares.size(); ++k) {
+        for (std::size_t k = first; k < end; ++k) {
             if (!channel.counts[k]) continue;
             mean += channel.relative[k];
             mean_share += shares[k];
             n += 1.0;
         }
-        for (std::size_t k = 0; k < shares.size(); ++k) {
+        if (n == 0.0) continue;
+        for (std::size_t k = first; k < end; ++k) {
             if (!channel.counts[k]) continue;
             const double a = channel.relative[k] - mean / n, b = shares[k] - mean_share / n;
             product += a * b;
@@ -130,22 +166,30 @@ CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {
     if (codes_ == 0) return best;
     // There are many more numbers that are not round, so that chance finds one of them sooner.
     const double cost = 0.5 / std::sqrt(static_cast<double>(codes_));
-    double most = -2.0;
+    constexpr double kCostOfGaps = 3.0;
+    double most = -2.0, most_gaps = kLeastGaps;
+    CombFit by_gaps;
     for (const ToneCurve& curve : curves) {
         const CombFit one = fit(curve);
-        const double score = one.score - cost * roundness(curve);
+        const double score = one.score - cost * roundness(curve), gaps = one.gaps - kCostOfGaps * roundness(curve);
+        if (gaps >= most_gaps) {
+            most_gaps = gaps;
+            by_gaps = one;
+        }
         if (score <= most) continue;
         most = score;
         best = one;
     }
-    return best;
+    const bool is_by_score =
+        best.score >= kLeastCombScore && best.score * std::sqrt(static_cast<double>(codes_)) >= kLeastCombProof;
+    return by_gaps.codes > 0 && !is_by_score ? by_gaps : best;
 }
 
-std::vector<ToneCurve> usual_tones(const Centre& centre) {
+std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {
     std::vector<ToneCurve> curves;
     const auto add = [&](const ToneCurve& curve) {
         for (const double c : {centre.x, centre.y}) {
-            if (std::abs(undone(curve, c) - 0.5) > kCombMiddle) return;
+            if (std::abs(undone(curve, c) - 0.5) > most_off) return;
         }
         curves.push_back(curve);
     };
@@ -153,6 +197,16 @@ std::vector<ToneCurve> usual_tones(const Centre& centre) {
     for (int k = 40; k <= 250; ++k) {
         if (!is_identity(k / 100.0)) add({0.0, 1.0, k / 100.0});
         if (k % 5 == 0 && !is_identity(100.0 / k)) add({0.0, 1.0, 100.0 / k});
+    }
+    for (int k = 50; k < 98; ++k) add({0.0, 100.0 / k, 1.0});  // darkened
+    // Brightness shifts all values.
+    for (int k = 1; k <= 30; ++k) {
+        add({-k / 100.0, 1.0 - k / 100.0, 1.0});
+        add({k / 100.0, 1.0 + k / 100.0, 1.0});
+    }
+    for (int k = 1; k <= 76; ++k) {
+        add({-k / 255.0, 1.0 - k / 255.0, 1.0});
+        add({k / 255.0, 1.0 + k / 255.0, 1.0});
     }
     for (const int top : {100, 255}) {
         for (int black = 0; black <= 2 * top / 5; ++black) {
@@ -175,6 +229,8 @@ int roundness(const ToneCurve& curve) {
     }
     const bool is_plain = curve.black == 0.0 || curve.white == 1.0 || std::abs(curve.black + curve.white - 1.0) < 1e-9;
     const auto is_round = [&](double step) { return is_multiple(curve.black, step) && is_multiple(curve.white, step); };
+    if (std::abs(curve.white - curve.black - 1.0) < 1e-9)
+        return is_multiple(curve.black, 0.05) ? 0 : is_multiple(curve.black, 0.01) ? 1 : 2;
     if (is_round(0.05)) return is_plain ? 0 : 1;
     return is_round(0.01) && is_plain ? 1 : 2;
 }

@@ -21,6 +21,9 @@ struct CombFit {
     ToneCurve curve;
     double score = 0.0;  // a correlation
     int codes = 0;       // over so many codes of x and y
+    // Codes that the curve makes of no other one, and that no texel has: how unlikely chance leaves them, as the
+    // logarithm of its share.
+    double gaps = 0.0;
 
     // Chance reaches 0.42 in maps of few codes, and the correlation times the root of their number 5.1.
     [[nodiscard]] bool is_proof() const;
@@ -40,18 +43,23 @@ public:
 
 private:
     [[nodiscard]] double correlation(const Counts& shares) const;
+    [[nodiscard]] double gap_evidence(const Counts& shares) const;
 
     struct Channel {
         std::array<double, kCodes> relative{};  // the count of a code over the mean about it
         std::array<bool, kCodes> counts{};      // whether there are enough texels
+        std::array<bool, kCodes> is_empty{};    // whether no texel has it
     };
     std::array<Channel, 2> channels_;
     int codes_ = 0;
 };
 
-// Curves with which people change levels, that bring both medians to the middle: gamma in hundredths and their
-// inverses; levels in percent and in codes of 8 bits.
-[[nodiscard]] std::vector<ToneCurve> usual_tones(const Centre& centre);
+inline constexpr double kUsualMiddle = 0.02;
+
+// Curves with which people change levels, that bring both medians to the middle, or `most_off` from it: gamma in
+// hundredths and their inverses; opacity over black and brightness in percent; levels in percent and in codes of 8
+// bits.
+[[nodiscard]] std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off = kUsualMiddle);
 
 // How round the numbers of such a curve are: 0 for gamma in tenths and for levels in steps of 5 % at one end or at both
 // alike.

@@ -15,6 +15,7 @@
 #include "checks/lengths.h"
 #include "checks/thresholds.h"
 #include "checks/tone.h"
+#include "checks/tone_texels.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -25,6 +26,7 @@ constexpr double kOffCentre = 0.03;
 constexpr double kPlainPower = 2.2;                     // which many programs have in place of the curve of sRGB
 constexpr double kLeastDarkened = 0.94;                 // nearer to 1, flat maps with short vectors look alike
 constexpr double kUnitAfterDivision = 0.05;             // the mean error of the lengths
+constexpr double kFormError = 1.0;                      // codes, of z that was stored in another form
 constexpr std::int64_t kLeastDarkenedTexels = 16 * 16;  // a number that suits a few colours can always be found
 
 // The number by which most vectors are unit vectors if their values are divided by it: |2 c / f - 1| = 1.
@@ -48,6 +50,9 @@ double rounded_factor(const CheckContext& context, double factor) {
     for (int k = 10; k < 100; ++k) {
         if (std::abs(k / 100.0 - factor) <= kAbout) usual.push_back({0.0, 100.0 / k, 1.0});
     }
+    for (int k = 25; k < 255; ++k) {
+        if (std::abs(k / 255.0 - factor) <= kAbout) usual.push_back({0.0, 255.0 / k, 1.0});
+    }
     const Background* const background = context.background ? &*context.background : nullptr;
     if (const CombFit fit = CodeComb(context.stored, background).best(usual); fit.is_proof())
         return 1.0 / fit.curve.white;
@@ -62,14 +67,24 @@ double rounded_factor(const CheckContext& context, double factor) {
 bool check_darkened(const CheckContext& context, const Centre& centre, Findings& findings) {
     if (channel_like_z(context.stored) < 0 || centre.distance(0.5) < kOffCentre) return false;
     if (context.stored.extent().texels() < kLeastDarkenedTexels) return false;
-    const double measured = unit_factor(context.stored);
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const ToneTexels texels = tone_texels(context.stored, background);
+    const double by_centre = std::min(1.0, centre.x + centre.y);
+    const ZForm form = by_centre > 0.0 ? likeliest_form(ToneCurve{0.0, 1.0 / by_centre, 1.0}, texels) : ZForm::whole;
+    // Lengths of vectors show the number only if z was stored as usual.
+    const double measured = form == ZForm::whole ? unit_factor(context.stored) : by_centre;
     if (measured > kLeastDarkened || centre.distance(measured / 2.0) > centre.distance(0.5) / 2.0) return false;
     const double factor = rounded_factor(context, measured);
     const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
     const double decoded =
         length_error(context.stored, [](double c, int, int) { return srgb_encoded(std::clamp(c, 0.0, 1.0)); });
     const double divided = length_error(context.stored, [&](double c, int, int) { return c / factor; });
-    if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
+    if (form == ZForm::whole) {
+        if (divided > kUnitAfterDivision || divided > as_stored / 2.0 || divided > decoded) return false;
+    } else {
+        const bool is_srgb = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
+        if (is_srgb || error_of(ToneCurve{0.0, 1.0 / factor, 1.0}, texels, form) > kFormError) return false;
+    }
     Finding& finding =
         findings.add("N313", "vectors are unit vectors if all channels are divided by " + decimal(factor, 2) +
                                  "; x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
@@ -113,9 +128,11 @@ bool is_plain_power(const CheckContext& context, const Centre& centre) {
                  by_srgb = centre.distance(srgb_encoded(0.5));
     if (by_power >= by_srgb || !context.stored.has_z()) return false;
     const auto clamped = [](double c) { return std::clamp(c, 0.0, 1.0); };
-    return length_error(context.stored, [&](double c, int, int) { return math::pow(clamped(c), kPlainPower); }) <
-           length_error(
-               context.stored, [&](double c, int, int) { return srgb_decoded(clamped(c)); });
+    constexpr double kLead = 0.95;  // of 40 maps that went through the curve of sRGB, the least is 0.98
+    const double with_power =
+        length_error(context.stored, [&](double c, int, int) { return math::pow(clamped(c), kPlainPower); });
+    const double with_srgb = length_error(context.stored, [&](double c, int, int) { return srgb_decoded(clamped(c)); });
+    return with_power < kLead * with_srgb;
 }
 
 }  // namespace

@@ -124,6 +124,7 @@ void check_constant(const CheckContext& context, Findings& findings) {
 // too. The sign of 2 blue - 1 does not count: bevels may lean beyond the vertical.
 bool follows_from_zero(const Stored& stored) {
     constexpr double kLead = 6.0, kLeastError = 1.5 / 127.5;
+    constexpr double kClearLead = 10.0, kLeastClearError = 1.0 / 127.5;  // nearly flat
     double as_stored = 0.0, from_zero = 0.0, count = 0.0;
     visit_samples(stored, [&](const double(&c)[3], int, int) {
         const double x = 2.0 * c[0] - 1.0, y = 2.0 * c[1] - 1.0, square = 1.0 - x * x - y * y;
@@ -133,7 +134,8 @@ bool follows_from_zero(const Stored& stored) {
         from_zero += std::abs(c[2] - z);
         count += 1.0;
     });
-    return count > 0.0 && as_stored > kLeastError * count && from_zero * kLead < as_stored;
+    if (as_stored > kLeastError * count) return from_zero * kLead < as_stored;
+    return as_stored > kLeastClearError * count && from_zero * kClearLead < as_stored;
 }
 
 // Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much

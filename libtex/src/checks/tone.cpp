@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "checks/comb.h"
+#include "checks/tone_texels.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -26,82 +28,46 @@ constexpr double kLeastContrastError = 1.5, kMostContrastError = 1.5;
 constexpr double kMostSpan = 0.95;                  // white - black
 constexpr double kMostUneven = 0.02;                // of black and white from both ends
 constexpr std::int64_t kLeastToneTexels = 64 * 64;  // in pixel art, chance makes any curve fit
-constexpr std::int64_t kToneTexels = 1 << 14;
-
-using ToneTexels = std::vector<std::array<double, 3>>;  // stored x, y and z
-
-ToneTexels tone_texels(const Stored& stored, const Background* background) {
-    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = stored.channel(Component::z);
-    const auto& planes = stored.image->planes;
-    const std::vector<Rect> windows = sample_windows(stored.extent());
-    std::int64_t all = 0;
-    for (const Rect& window : windows) all += std::int64_t{window.width} * window.height;
-    // Odd, so that it does not follow columns of a map.
-    const auto step = all > 7 * kToneTexels ? std::max<std::int64_t>(7, all / kToneTexels) | 1
-                      : all > kToneTexels   ? 7
-                                            : 1;
-    ToneTexels texels;
-    for (const Rect& window : windows) {
-        for (std::int64_t k = 0; k < std::int64_t{window.width} * window.height; k += step) {
-            const int i = window.x + static_cast<int>(k % window.width);
-            const int j = window.y + static_cast<int>(k / window.width);
-            if (background != nullptr && background->holds(i, j)) continue;
-            const auto at = [&](int c) { return static_cast<double>(planes[static_cast<std::size_t>(c)].at(i, j)); };
-            const std::array<double, 3> texel = {at(x), at(y), at(z)};
-            const auto is_code = [](double c) { return c >= 0.0 && c <= 1.0; };
-            if (std::all_of(texel.begin(), texel.end(), is_code)) texels.push_back(texel);
-        }
-    }
-    return texels;
-}
-
-// How z was stored before levels were changed.
-enum class ZForm { whole, inverted, from_zero };
-
-// The mean distance, in codes, of z as it is stored from what the curve makes of the z of x and y. Where x and y leave
-// the unit circle, they add how far.
-double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole) {
-    double sum = 0.0;
-    for (const auto& [x, y, z] : texels) {
-        const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
-        const double square = 1.0 - a * a - b * b;
-        const double root = std::sqrt(std::max(0.0, square));
-        const double before = form == ZForm::whole      ? 0.5 + 0.5 * root
-                              : form == ZForm::inverted ? 0.5 - 0.5 * root
-                                                        : root;
-        const double expected = redone(curve, before);
-        sum += std::abs(expected - z) + 0.5 * std::max(0.0, -square);
-    }
-    return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
-}
-
 struct ToneCandidate {
     ToneCurve curve;
     double error = 1e9;
+    ZForm form = ZForm::whole;
 };
 
 // Gamma, which the middle nearly states.
-ToneCandidate best_gamma(double middle, const ToneTexels& texels) {
+ToneCandidate best_gamma(double middle, const ToneTexels& texels, ZForm form) {
     ToneCandidate best;
     const double stated = math::log(0.5) / math::log(middle);
     for (int k = -6; k <= 6; ++k) {
         const ToneCurve curve{0.0, 1.0, stated * (1.0 + 0.005 * k)};
         const double off = 255.0 * std::abs(undone(curve, middle) - 0.5);
-        const double error = error_of(curve, texels) + std::max(0.0, off - 0.6);
-        if (error < best.error) best = {curve, error};
+        const double error = error_of(curve, texels, form) + std::max(0.0, off - 0.6);
+        if (error < best.error) best = {curve, error, form};
     }
     return best;
 }
 
+constexpr double kMostLevels = 1.3, kLeastLevels = 0.5, kLevelsStep = 0.01;  // white - black
+
+// A curve that would go on to fit better if it could.
+bool is_at_limit(const ToneCurve& curve) {
+    return curve.gamma == 1.0 && curve.white - curve.black < kLeastLevels + 1.5 * kLevelsStep;
+}
+
 // Levels that put the middle where it is. Where z is cut off nearly everywhere, many contrasts fit; the least counts.
-ToneCandidate best_levels(double middle, double as_stored, const ToneTexels& texels) {
-    constexpr double kFrom = 1.3, kTo = 0.5, kStep = 0.01;
+ToneCandidate best_levels(double middle, double as_stored, const ToneTexels& texels, ZForm form) {
     std::vector<ToneCandidate> all;
     double least = 1e9;
-    for (int k = 0; kFrom - kStep * k >= kTo; ++k) {
-        const double span = kFrom - kStep * k;
+    // Darkened by more, black stays where it is.
+    if (const double white = 0.5 / middle; white > kMostLevels) {
+        const ToneCurve curve{0.0, white, 1.0};
+        all.push_back({curve, error_of(curve, texels, form), form});
+        least = all.back().error;
+    }
+    for (int k = 0; kMostLevels - kLevelsStep * k >= kLeastLevels; ++k) {
+        const double span = kMostLevels - kLevelsStep * k;
         const ToneCurve curve{0.5 - span * middle, 0.5 - span * middle + span, 1.0};
-        all.push_back({curve, error_of(curve, texels)});
+        all.push_back({curve, error_of(curve, texels, form), form});
         least = std::min(least, all.back().error);
     }
     const double most = least + 0.01 + 0.002 * as_stored;
@@ -114,11 +80,12 @@ ToneCandidate sharpened(const ToneCandidate& best, const CombFit& in_codes, cons
                         const ToneTexels& texels) {
     constexpr double kHint = 0.2, kAlike = 0.3, kAlikeCodes = 0.1;
     if (in_codes.score >= kHint) {
-        const ToneCandidate found{in_codes.curve, error_of(in_codes.curve, texels)};
+        const ToneCandidate found{in_codes.curve, error_of(in_codes.curve, texels, best.form), best.form};
         if (found.error <= best.error * (1.0 + kAlike) + kAlikeCodes) return found;
     }
     constexpr double kAbout = 0.03, kAboutCodes = 0.03, kNear = 0.04;
     const double most = best.error * (1.0 + kAbout) + kAboutCodes;
+    const double most_beyond = best.error * (1.0 + kAlike) + kAlikeCodes;
     const bool is_gamma = best.curve.gamma != 1.0;
     const bool is_beyond = best.curve.black < -0.01 || best.curve.white > 1.01;
     ToneCandidate chosen = best;
@@ -129,11 +96,14 @@ ToneCandidate sharpened(const ToneCandidate& best, const CombFit& in_codes, cons
         const bool is_near = std::abs(curve.gamma - best.curve.gamma) <= kNear &&
                              std::abs(curve.black - best.curve.black) <= kNear &&
                              std::abs(curve.white - best.curve.white) <= kNear;
-        // Nobody stretches levels beyond their ends; then it may be a curve of the other family.
-        if (is_alike ? !is_near : !is_beyond || roundness(curve) > 0) continue;
-        const double error = error_of(curve, texels);
-        if (error > most || (roundness(curve) == chosen_roundness && error >= chosen.error)) continue;
-        chosen = {curve, error};
+        // It may be a round curve of the other family, the more so as hardly anybody stretches levels beyond their
+        // ends.
+        if (is_alike ? !is_near : roundness(curve) > 0) continue;
+        const double error = error_of(curve, texels, best.form);
+        if (error > (is_alike || !is_beyond ? most : most_beyond) ||
+            (roundness(curve) == chosen_roundness && error >= chosen.error))
+            continue;
+        chosen = {curve, error, best.form};
         chosen_roundness = roundness(curve);
     }
     return chosen;
@@ -153,17 +123,52 @@ bool agrees(ToneCandidate& found, const ToneTexels& texels) {
     return found.error <= kMostMore * error_of({}, texels, best);
 }
 
+// The curve and the form of z that fit best, and the error of the best curve of the other family. The usual form is
+// taken unless another fits much better.
+struct BestTone {
+    ToneCandidate gamma, levels;
+    [[nodiscard]] bool is_gamma() const { return gamma.error < levels.error; }
+    [[nodiscard]] const ToneCandidate& best() const { return is_gamma() ? gamma : levels; }
+    [[nodiscard]] double other() const { return is_gamma() ? levels.error : gamma.error; }
+};
+
+BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels) {
+    constexpr double kFormLead = 2.0;
+    BestTone chosen;
+    for (const ZForm form : possible_forms(texels)) {
+        BestTone one;
+        if (with_gamma) one.gamma = best_gamma(middle, texels, form);
+        one.levels = best_levels(middle, error_of({}, texels, form), texels, form);
+        const double lead = form == ZForm::from_zero ? kFormLead : 1.0;
+        if (lead * one.best().error < chosen.best().error) chosen = one;
+    }
+    return chosen;
+}
+
+double least_error(const ToneTexels& texels) {
+    double least = 1e9;
+    for (const ZForm form : possible_forms(texels)) least = std::min(least, error_of({}, texels, form));
+    return least;
+}
+
 }  // namespace
 
-double undone(const ToneCurve& curve, double c) {
-    const double power = curve.gamma == 1.0 ? c : math::pow(c, curve.gamma);
-    return curve.black + (curve.white - curve.black) * power;
+namespace {
+
+// What the codes show beyond doubt, wherever the middle is, and whatever z says: of maps whose vectors were no unit
+// vectors, or that lean.
+std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, const ToneTexels& texels,
+                                 double as_stored) {
+    constexpr double kFarOff = 0.06, kSureScore = 0.8;
+    std::vector<ToneCurve> round = usual_tones(centre, kFarOff);
+    std::erase_if(round, [](const ToneCurve& curve) { return roundness(curve) > 1; });
+    const CombFit in_codes = comb.best(round);
+    if (!in_codes.is_proof() || in_codes.score < kSureScore) return std::nullopt;
+    const ZForm form = likeliest_form(in_codes.curve, texels);
+    return ToneFit{in_codes.curve, as_stored, error_of(in_codes.curve, texels, form), as_stored, true};
 }
 
-double redone(const ToneCurve& curve, double c) {
-    const double level = std::clamp((c - curve.black) / (curve.white - curve.black), 0.0, 1.0);
-    return curve.gamma == 1.0 ? level : math::pow(level, 1.0 / curve.gamma);
-}
+}  // namespace
 
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background) {
     const double middle = (centre.x + centre.y) / 2.0, off = std::abs(middle - 0.5);
@@ -171,29 +176,30 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (!is_one_curve || middle < 0.15 || middle > 0.85 || stored.extent().texels() < kLeastToneTexels)
         return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
-    const double as_stored = error_of({}, texels);
+    const double as_stored = least_error(texels);
     const std::vector<ToneCurve> usual = usual_tones(centre);
-    const CombFit in_codes = CodeComb(stored, background).best(usual);
+    const CodeComb comb(stored, background);
+    const CombFit in_codes = comb.best(usual);
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
         if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
+    if (const auto sure = sure_tone(comb, centre, texels, as_stored)) return sure;
     if (as_stored < kLeastToneError) return std::nullopt;
-    const ToneCandidate gamma = best_gamma(middle, texels), levels = best_levels(middle, as_stored, texels);
-    const bool is_gamma = gamma.error < levels.error;
-    const ToneCandidate& best = is_gamma ? gamma : levels;
-    if (best.error > as_stored / kToneLead) return std::nullopt;
+    const BestTone fits = best_of_forms(middle, true, texels);
+    const ToneCandidate& best = fits.best();
+    if (best.error > as_stored / kToneLead || is_at_limit(best.curve)) return std::nullopt;
     for (const double c : {centre.x, centre.y}) {
         if (std::abs(undone(best.curve, c) - 0.5) > kMiddleAfter) return std::nullopt;
     }
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
-    return ToneFit{chosen.curve, as_stored, chosen.error, is_gamma ? levels.error : gamma.error};
+    return ToneFit{chosen.curve, as_stored, chosen.error, fits.other()};
 }
 
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background) {
     if (centre.distance(0.5) > kOffMiddle || stored.extent().texels() < kLeastToneTexels) return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
-    const double as_stored = error_of({}, texels);
+    const double as_stored = least_error(texels);
     std::vector<ToneCurve> usual = usual_tones(centre);
     std::erase_if(usual, [](const ToneCurve& curve) {
         return curve.gamma != 1.0 || std::abs(curve.black + curve.white - 1.0) > kMostUneven ||
@@ -205,11 +211,40 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
         if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;
-    const ToneCandidate best = best_levels(0.5, as_stored, texels);
+    const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     const bool is_proven = best.error < kMostContrastError && best.error < as_stored / kContrastLead;
-    if (!is_proven || best.curve.white - best.curve.black > kMostSpan) return std::nullopt;
+    if (!is_proven || is_at_limit(best.curve) || best.curve.white - best.curve.black > kMostSpan) return std::nullopt;
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
     return ToneFit{chosen.curve, as_stored, chosen.error, as_stored};
+}
+
+std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& centre, const Background* background) {
+    constexpr double kFarOff = 0.12, kClearScore = 0.45, kBetter = 0.8;
+    if (stored.extent().texels() < kLeastToneTexels) return std::nullopt;
+    std::vector<ToneCurve> round = usual_tones(centre, kFarOff);
+    std::erase_if(round, [](const ToneCurve& curve) { return roundness(curve) > 1; });
+    const CombFit in_codes = CodeComb(stored, background).best(round);
+    if (!in_codes.is_proof() || in_codes.score < kClearScore) return std::nullopt;
+    const ToneTexels texels = tone_texels(stored, background);
+    const double as_stored = least_error(texels);
+    const ZForm form = likeliest_form(in_codes.curve, texels);
+    const double error = error_of(in_codes.curve, texels, form);
+    if (error > kBetter * as_stored) return std::nullopt;
+    return ToneFit{in_codes.curve, as_stored, error, as_stored, true};
+}
+
+int few_colors(const Stored& stored) {
+    constexpr std::size_t kMostColors = 256;
+    const auto& planes = stored.image->planes;
+    if (planes.size() < 3 || stored.extent().texels() < kLeastToneTexels) return 0;
+    std::set<std::array<float, 3>> colors;
+    for (int j = 0; j < stored.extent().height; ++j) {
+        for (int i = 0; i < stored.extent().width; ++i) {
+            colors.insert({planes[0].at(i, j), planes[1].at(i, j), planes[2].at(i, j)});
+            if (colors.size() > kMostColors) return 0;
+        }
+    }
+    return static_cast<int>(colors.size());
 }
 
 int few_levels(const Stored& stored) {

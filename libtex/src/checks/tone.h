@@ -22,16 +22,18 @@ struct ToneFit {
     bool is_in_codes = false;             // the histogram of 8 bits shows this curve and no other
 };
 
-// What a curve was before levels were changed, and what it becomes.
-double undone(const ToneCurve& curve, double c);
-double redone(const ToneCurve& curve, double c);
-
 // The change of levels of all channels that moved x and y off the middle. Nothing if they are there, or if the lengths
 // of vectors do not prove it. Precondition: x, y and z are stored, unsigned.
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background);
 
 // The contrast that made vectors longer and left the middle where it is: white - black is below 1.
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background);
+
+// A change of levels that the histogram of 8 bits shows, in a map that leans, so that the middle shows nothing.
+std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& centre, const Background* background);
+
+// The number of colours of a picture with a palette, 256 or less; 0 if there are more, or few texels.
+int few_colors(const Stored& stored);
 
 // The number of values that x and y take, at most, if they are codes of 8 bits that lie 4 or more from each other, as
 // after a reduction to few levels; 0 if they do not.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "checks/background_fill.h"
 #include "checks/centre.h"
@@ -30,17 +32,23 @@ constexpr double kLeanDegrees = 10.0;
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
 
-// Levels that were stretched on both sides alike leave x and y on the middle; z was cut off, and shows how far.
-void find_contrast_of(const CheckContext& context, Finding& finding) {
+// Levels that were stretched on both sides alike leave x and y on the middle; z was cut off, and shows how far. Maps
+// that lean have no middle, but the codes of 8 bits may show a curve.
+void find_levels_of(const CheckContext& context, bool is_stretched, Finding& finding) {
     const Stored& stored = context.stored;
     if (!stored.has_z() || stored.is_signed || context.kind != Kind::normals) return;
     const Background* const background = context.background ? &*context.background : nullptr;
-    const auto fit = find_contrast(stored, measure_centre(stored, background), background);
+    const Centre centre = measure_centre(stored, background);
     const bool is_by_z = finding.rule->id == "N201";  // and not constant
-    if (!fit || (!is_by_z && !fit->is_in_codes)) return;
-    finding.tone = fit->curve;
+    auto fit = is_stretched ? find_contrast(stored, centre, background) : std::nullopt;
+    if (fit && !is_by_z && !fit->is_in_codes) return;
+    if (!fit && is_by_z) fit = find_tone_in_codes(stored, centre, background);
+    if (!fit) return;
+    const ToneCurve& curve = fit->curve;
+    finding.tone = curve;
     finding.message += std::string(is_by_z ? "; z fits x and y" : "; the codes of x and y show no gaps") +
-                       " if a contrast of " + decimal(1.0 / (fit->curve.white - fit->curve.black), 2) +
+                       (curve.gamma != 1.0 ? " if gamma " + decimal(curve.gamma, 2)
+                                           : " if a contrast of " + decimal(1.0 / (curve.white - curve.black), 2)) +
                        " is taken back";
 }
 
@@ -63,12 +71,26 @@ void check_lengths(const CheckContext& context, Findings& findings) {
                             decimal(static_cast<double>(counts.max_length), 2) + ")");
         if (is_stretched) {
             finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
-            find_contrast_of(context, finding);
         }
+        find_levels_of(context, is_stretched, finding);
+        const int colors = finding.tone ? 0 : few_colors(context.stored);
+        if (colors > 0)
+            finding.message += "; the picture has " + std::to_string(colors) +
+                               " colours, as with a palette, and what lay between them does not come back";
     }
     const double below = counts.share(Property::z_below);
-    if (below > kBelowShare && counts.share(Property::z_behind) > kFarBelow * below)
-        add_counted(context, findings, "N202", Property::z_below, " have z below zero");
+    if (below > kBelowShare && counts.share(Property::z_behind) > kFarBelow * below) {
+        constexpr float kOvershot = 1.15f;
+        const bool is_sharpened = !has_free_lengths(context) && context.stored.has_z() &&
+                                  counts.max_length > kOvershot && counts.share(Property::off_length) > kOffLengthShare;
+        add_counted(
+            context, findings, "N202", Property::z_below,
+            " have z below zero" +
+                (is_sharpened ? ", and vectors are up to " + decimal(static_cast<double>(counts.max_length), 2) +
+                                    " long: sharpening and contrast overshoot so, and no repair brings back "
+                                    "what was cut off"
+                              : std::string()));
+    }
     if (!context.stored.has_z() && counts.share(Property::beyond_unit) > kBeyondShare) {
         add_counted(context, findings, "N203", Property::beyond_unit, " have x^2 + y^2 above 1");
     }
@@ -131,7 +153,7 @@ void check_channels(const CheckContext& context, Findings& findings) {
     if (cz >= 0 && is_filler()) {
         const float blue = counts.low[static_cast<std::size_t>(cz)];
         Finding& finding = findings.add("N209", "blue is " + decimal(static_cast<double>(blue), 3) + " everywhere");
-        if (blue == 1.0f) find_contrast_of(context, finding);  // which may have cut all of z off
+        if (blue == 1.0f) find_levels_of(context, true, finding);  // which may have cut all of z off
     }
     if (counts[Property::red_not_one].count > 0) {
         add_counted(context, findings, "N211", Property::red_not_one, " have R below 255");

@@ -17,6 +17,7 @@
 
 #include "checks/centre.h"
 #include "checks/texel_counts.h"
+#include "checks/tone_texels.h"
 #include "repairs/smooth_steps.h"
 #include "rows/math.h"
 #include "rows/unpack_rows.h"
@@ -100,14 +101,15 @@ void divide_row(const LevelTexels& t, int j) {
     }
 }
 
-// Where z was cut off, it follows from x and y.
-void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, int j) {
+// Where z was cut off, it follows from x and y. One that was stored in another form was cut off at black, too.
+void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int j) {
     constexpr float kCutOff = 254.5f / 255.0f;
     const auto black = static_cast<float>(tone.black), span = static_cast<float>(tone.white - tone.black);
-    const bool is_cut = tone.white < 1.0;
+    const bool is_cut = tone.white<1.0, is_cut_below = tone.black> 0.0 && form != ZForm::whole;
     const float* const zs = t.z < 0 ? nullptr : t.row(t.z, j);
     for (int i = 0; i < t.image.extent().width; ++i) {
-        const bool is_lost = is_cut && zs != nullptr && zs[i] >= kCutOff;
+        const bool is_lost =
+            zs != nullptr && ((is_cut && zs[i] >= kCutOff) || (is_cut_below && zs[i] <= 1.0f - kCutOff));
         for (const int channel : {t.x, t.y, t.z}) {
             if (channel < 0) continue;
             float& c = t.row(channel, j)[i];
@@ -118,8 +120,16 @@ void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, int j) {
         }
         if (!is_lost) continue;
         const float a = t.component(t.row(t.x, j)[i]), b = t.component(t.row(t.y, j)[i]);
-        t.row(t.z, j)[i] = t.code(std::sqrt(std::max(0.0f, 1.0f - a * a - b * b)));
+        const float root = std::sqrt(std::max(0.0f, 1.0f - a * a - b * b));
+        t.row(t.z, j)[i] = static_cast<float>(stored_z(form, static_cast<double>(root)));
     }
+}
+
+Result<void> undo_tone_of(const ToneCurve& tone, StoredLevels& levels, const Execution& execution) {
+    const Stored base = levels.stored(0);
+    const ZForm form =
+        base.has_z() && !levels.is_signed ? likeliest_form(tone, tone_texels(base, nullptr)) : ZForm::whole;
+    return each_row(levels, execution, [&](const LevelTexels& t, int j) { undo_tone_row(t, tone, form, j); });
 }
 
 void normalize_row(const LevelTexels& t, int j) {
@@ -324,8 +334,7 @@ Result<void> apply_step(const RepairStep& step, const RepairOptions& options, co
             });
         case RepairKind::fill_background: return fill_base(mip, current, levels, execution);
         case RepairKind::rebuild_levels: return build_levels(mip, step.rule->id == "N103", levels, execution);
-        case RepairKind::undo_tone:
-            return row_change([&](const LevelTexels& t, int j) { undo_tone_row(t, *step.tone, j); });
+        case RepairKind::undo_tone: return undo_tone_of(*step.tone, levels, execution);
         case RepairKind::straighten: return turn_mean_out(levels, execution);
         case RepairKind::turn_left:
         case RepairKind::turn_right: {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "checks/tone_texels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "checks/lengths.h"
+#include "rows/math.h"
+
+namespace tex::inline v1 {
+namespace {
+
+constexpr std::int64_t kToneTexels = 1 << 14;
+constexpr double kFormLead = 2.0;          // of the error of the usual form over that of another
+constexpr double kInvertedRelated = -0.3;  // a correlation
+
+}  // namespace
+
+double undone(const ToneCurve& curve, double c) {
+    const double power = curve.gamma == 1.0 ? c : math::pow(c, curve.gamma);
+    return curve.black + (curve.white - curve.black) * power;
+}
+
+double redone(const ToneCurve& curve, double c) {
+    const double level = std::clamp((c - curve.black) / (curve.white - curve.black), 0.0, 1.0);
+    return curve.gamma == 1.0 ? level : math::pow(level, 1.0 / curve.gamma);
+}
+
+ToneTexels tone_texels(const Stored& stored, const Background* background) {
+    const int x = stored.channel(Component::x), y = stored.channel(Component::y), z = channel_like_z(stored);
+    const auto& planes = stored.image->planes;
+    const std::vector<Rect> windows = sample_windows(stored.extent());
+    std::int64_t all = 0;
+    for (const Rect& window : windows) all += std::int64_t{window.width} * window.height;
+    // Odd, so that it does not follow columns of a map.
+    const auto step = all > 7 * kToneTexels ? std::max<std::int64_t>(7, all / kToneTexels) | 1
+                      : all > kToneTexels   ? 7
+                                            : 1;
+    ToneTexels texels;
+    for (const Rect& window : windows) {
+        for (std::int64_t k = 0; k < std::int64_t{window.width} * window.height; k += step) {
+            const int i = window.x + static_cast<int>(k % window.width);
+            const int j = window.y + static_cast<int>(k / window.width);
+            if (background != nullptr && background->holds(i, j)) continue;
+            const auto at = [&](int c) { return static_cast<double>(planes[static_cast<std::size_t>(c)].at(i, j)); };
+            const std::array<double, 3> texel = {at(x), at(y), at(z)};
+            const auto is_code = [](double c) { return c >= 0.0 && c <= 1.0; };
+            if (std::all_of(texel.begin(), texel.end(), is_code)) texels.push_back(texel);
+        }
+    }
+    return texels;
+}
+
+double stored_z(ZForm form, double root) {
+    return form == ZForm::whole ? 0.5 + 0.5 * root : form == ZForm::inverted ? 0.5 - 0.5 * root : root;
+}
+
+double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
+    double sum = 0.0;
+    for (const auto& [x, y, z] : texels) {
+        const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
+        const double square = 1.0 - a * a - b * b;
+        const double expected = redone(curve, stored_z(form, std::sqrt(std::max(0.0, square))));
+        sum += std::abs(expected - z) + 0.5 * std::max(0.0, -square);
+    }
+    return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
+}
+
+std::vector<ZForm> possible_forms(const ToneTexels& texels) {
+    // Steep vectors lie far from the middle of their colours, whatever the curve.
+    double n = 0.0, middle_x = 0.0, middle_y = 0.0;
+    for (const auto& [x, y, z] : texels) {
+        middle_x += x;
+        middle_y += y;
+        n += 1.0;
+    }
+    if (n == 0.0) return {ZForm::whole};
+    middle_x /= n;
+    middle_y /= n;
+    double sum = 0.0, sum_z = 0.0, squares = 0.0, squares_z = 0.0, product = 0.0;
+    for (const auto& [x, y, z] : texels) {
+        const double steep = (x - middle_x) * (x - middle_x) + (y - middle_y) * (y - middle_y);
+        sum += steep;
+        sum_z += z;
+        squares += steep * steep;
+        squares_z += z * z;
+        product += steep * z;
+    }
+    const double both = (squares / n - sum * sum / n / n) * (squares_z / n - sum_z * sum_z / n / n);
+    const double correlation = both > 0.0 ? -(product / n - sum * sum_z / n / n) / std::sqrt(both) : 0.0;
+    if (correlation < kInvertedRelated) return {ZForm::inverted};
+    return {ZForm::whole, ZForm::from_zero};
+}
+
+ZForm likeliest_form(const ToneCurve& curve, const ToneTexels& texels) {
+    ZForm best = ZForm::whole;
+    double least = error_of(curve, texels) / kFormLead;
+    for (const ZForm form : possible_forms(texels)) {
+        if (form == ZForm::whole) continue;
+        const double error = error_of(curve, texels, form);
+        if (error >= least) continue;
+        least = error;
+        best = form;
+    }
+    return best;
+}
+
+}  // namespace tex::inline v1

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// tone_texels.h: stored x, y and z, and how well z follows from x and y once a change of levels is undone.
+
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <tex/check.h>
+
+#include "checks/background.h"
+#include "checks/stored.h"
+
+namespace tex::inline v1 {
+
+// What a value was before levels were changed, and what it becomes.
+double undone(const ToneCurve& curve, double c);
+double redone(const ToneCurve& curve, double c);
+
+using ToneTexels = std::vector<std::array<double, 3>>;  // stored x, y and z
+
+// Those of up to about 2^14 texels. Precondition: x and y are stored, and z or blue.
+ToneTexels tone_texels(const Stored& stored, const Background* background);
+
+// How z was stored before levels were changed: as (z + 1) / 2, as (1 - z) / 2, or from 0 to 1.
+enum class ZForm { whole, inverted, from_zero };
+
+// `root` is z from x and y; what is stored for it.
+double stored_z(ZForm form, double root);
+
+// The mean distance, in codes, of z as it is stored from what the curve makes of the z of x and y. Where x and y leave
+// the unit circle, they add how far.
+double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
+
+// The forms that may have been stored, the usual one first. No curve changes whether z grows where x and y say so.
+std::vector<ZForm> possible_forms(const ToneTexels& texels);
+
+// The form that fits best after a curve. It must fit much better than the usual one.
+ZForm likeliest_form(const ToneCurve& curve, const ToneTexels& texels);
+
+}  // namespace tex::inline v1

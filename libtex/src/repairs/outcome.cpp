@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "repairs/outcome.h"
+
+#include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
+
+#include <tex/pack.h>
+
+namespace tex::inline v1 {
+namespace {
+
+constexpr double kLeftOfLengths = 0.7;  // of the share of vectors that levels had made longer
+
+}  // namespace
+
+const Finding* find_finding(const CheckReport& report, std::string_view id) {
+    for (const Finding& finding : report.findings) {
+        if (finding.rule->id == id) return &finding;
+    }
+    return nullptr;
+}
+
+bool is_gone(const CheckReport& report, const RepairStep& step, double figure) {
+    const std::string_view id = step.rule->id;
+    if (id == "N214" || id == "N213") return find_finding(report, id) == nullptr;
+    // Channels go back first where levels were changed, too, and where x and y were exchanged beside z.
+    constexpr std::string_view kTones[] = {"N301", "N302", "N313", "N314"};
+    // What levels cut off stays so, and leaves some vectors off unit length.
+    if (step.kind == RepairKind::undo_tone && (id == "N201" || id == "N205")) {
+        const Finding* const left = find_finding(report, id);
+        return left == nullptr || (!left->tone && left->figure < kLeftOfLengths * figure);
+    }
+    const bool is_of_z = id == "N308" && step.certainty == RepairClass::safe && step.kind == RepairKind::exchange;
+    return std::none_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
+        if (finding.rule->id == id) return !is_of_z || finding.unit == "component";
+        if (is_of_z && std::find(std::begin(kTones), std::end(kTones), finding.rule->id) != std::end(kTones))
+            return false;
+        return finding.severity == Severity::error && finding.rule->explains.find(id) != std::string_view::npos;
+    });
+}
+
+bool proves(RepairKind kind) {
+    return kind != RepairKind::bake_heights && kind != RepairKind::straighten && kind != RepairKind::fill_background &&
+           kind != RepairKind::normalize && kind != RepairKind::rebuild_levels;
+}
+
+Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution) {
+    const auto base = [&](const Texture& from) -> Result<NormalMap> {
+        Texture one;
+        one.format = from.format;
+        one.levels = {from.levels.front()};
+        one.swizzle = from.swizzle;
+        one.y_axis = from.y_axis;
+        one.normal_encoding = from.normal_encoding;
+        auto chain = unpack(one, {}, execution);
+        if (!chain) return chain.error();
+        return std::move(chain->levels.front());
+    };
+    const auto a = base(before), b = base(after);
+    if (!a || !b) return 0.0;
+    auto compared = compare(*a, *b, execution);
+    if (!compared) return compared.error();
+    return compared->error.mean;
+}
+
+}  // namespace tex::inline v1
