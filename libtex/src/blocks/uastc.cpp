@@ -7,8 +7,10 @@
 
 #include "blocks/astc_ise.h"
 #include "blocks/astc_mode.h"
+#include "blocks/block_entries.h"
 #include "blocks/bptc.h"
 #include "blocks/uastc_modes.h"
+#include "blocks/uastc_parts.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -122,6 +124,78 @@ void decode_uastc(const std::byte* block, std::uint8_t channels[4][16]) {
         }
         interpolate(line, mode.subsets, pattern->subset, weights[c == second_channel ? 1 : 0], channels[c]);
     }
+}
+
+std::optional<UastcParts> read_uastc_parts(const std::byte* block) {
+    UastcParts parts;
+    parts.mode = kUastcModeOfBits[std::to_integer<unsigned>(block[0]) & ((1u << kLongestUastcCode) - 1)];
+    if (parts.mode == kUastcModes) return std::nullopt;
+    const UastcMode& mode = parts.row();
+    UastcHints& hints = parts.hints;
+    BptcBits bits(block);
+    bits.take(mode.code_bits);
+    if (parts.mode == kUastcSolid) {
+        for (std::uint8_t& code : parts.color) code = static_cast<std::uint8_t>(bits.take(8));
+        hints.diff = bits.take(1) != 0;
+        hints.table[0] = static_cast<std::uint8_t>(bits.take(3));
+        hints.selector = static_cast<std::uint8_t>(bits.take(2));
+        for (std::uint8_t& code : hints.base) code = static_cast<std::uint8_t>(bits.take(5));
+        return parts;
+    }
+    // Modes 10 to 12 lack a hint and the bias; those with alpha have 8 bits for EAC.
+    const bool has_all = mode.hint_bits != 17;
+    hints.bc1_ends = bits.take(1) != 0;
+    hints.bc1_weights = has_all && bits.take(1) != 0;
+    hints.flip = bits.take(1) != 0;
+    hints.diff = bits.take(1) != 0;
+    for (std::uint8_t& table : hints.table) table = static_cast<std::uint8_t>(bits.take(3));
+    if (has_all) hints.bias = static_cast<std::uint8_t>(bits.take(5));
+    bits.take(mode.hint_bits - (has_all ? 15 : 9));
+    if (mode.subsets > 1) parts.pattern_number = bits.take(mode.subsets == 2 ? 5 : 4);
+    parts.pattern = uastc_pattern(parts.mode, parts.pattern_number);
+    if (parts.pattern == nullptr) return std::nullopt;
+    parts.second_channel = read_second_channel(bits, mode);
+    read_endpoint_values(bits, mode.color_range, 2 * mode.channels * mode.subsets, parts.ends);
+    for (int k = 0; k < kUastcTexels; ++k) {
+        for (int plane = 0; plane < mode.planes; ++plane)
+            parts.weights[plane][k] =
+                static_cast<std::uint8_t>(bits.take(mode.weight_bits - (parts.pattern->is_anchor[k] ? 1 : 0)));
+    }
+    return parts;
+}
+
+BlockEntries read_uastc_entries(const std::byte* block) {
+    BlockEntries entries;
+    const std::optional<UastcParts> parts = read_uastc_parts(block);
+    if (!parts || parts->mode == kUastcSolid) {
+        std::uint8_t first[4][16];
+        decode_uastc(block, first);
+        for (int c = 0; c < 4; ++c) entries.code[0][c] = first[c][0];
+        return entries;
+    }
+    const UastcMode& mode = parts->row();
+    const int pattern_bits = mode.subsets == 1 ? 0 : mode.subsets == 2 ? 5 : 4;
+    entries.front = mode.code_bits + mode.hint_bits + pattern_bits + (mode.planes == 2 && mode.channels != 2 ? 2 : 0) +
+                    astc_ise_bits(mode.color_range, 2 * mode.channels * mode.subsets);
+    for (int plane = 0; plane < mode.planes; ++plane) entries.bits[plane] = mode.weight_bits;
+    entries.is_mixed = true;
+    entries.subsets = mode.subsets;
+    entries.count = 1 << (mode.planes * mode.weight_bits);
+    for (int k = 0; k < kUastcTexels; ++k) {
+        entries.subset[k] = parts->pattern->subset[k];
+        entries.anchors |= parts->pattern->is_anchor[k] ? 1u << k : 0u;
+    }
+    const std::uint8_t* const meaning = kAstcMeanings.weight[kUastcWeightRanges[mode.weight_bits]];
+    for (int n = 0; n < entries.total(); ++n) {
+        const int s = n / entries.count, e = n % entries.count;
+        for (int c = 0; c < 4; ++c) {
+            UastcEnds line = {};
+            line.set(0, parts->end(s, c, 0), parts->end(s, c, 1));
+            const int index = c == parts->second_channel ? e >> mode.weight_bits : e & ((1 << mode.weight_bits) - 1);
+            entries.code[n][c] = static_cast<std::uint8_t>((line.begin[0] + line.step[0] * meaning[index]) >> 14);
+        }
+    }
+    return entries;
 }
 
 }  // namespace tex::inline v1
