@@ -9,7 +9,7 @@
 #include "blocks/astc_decode.h"
 #include "blocks/etc1s.h"
 #include "blocks/extent.h"
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 #include "rows/usable.h"
 #include "threads/no_throw.h"
 #include "threads/parallel.h"

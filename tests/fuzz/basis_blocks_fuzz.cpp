@@ -12,7 +12,7 @@
 #include "blocks/block_entries.h"
 #include "blocks/etc1s.h"
 #include "blocks/uastc.h"
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 #include "rows/decode_rows.h"
 
 namespace {

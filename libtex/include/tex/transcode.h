@@ -8,6 +8,8 @@
 
 namespace tex::inline v1 {
 
+// -- transcode -----------------------------------------------------------------------------------------------------
+
 // What loaders make of blocks of Basis Universal, by what a GPU can read: its transcoder makes ASTC and BC7 of the
 // endpoints and indices of UASTC, and BC1 and ETC1 (which ETC2 contains) by the hints that the encoder has left in each
 // block.

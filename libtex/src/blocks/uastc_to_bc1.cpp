@@ -8,7 +8,7 @@
 
 #include "blocks/uastc.h"
 #include "blocks/uastc_parts.h"
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 
 namespace tex::inline v1 {
 namespace {

@@ -10,7 +10,7 @@
 #include "blocks/bc7_write.h"
 #include "blocks/bptc.h"
 #include "blocks/uastc_parts.h"
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 
 namespace tex::inline v1 {
 namespace {

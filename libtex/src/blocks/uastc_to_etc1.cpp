@@ -6,7 +6,7 @@
 #include "blocks/astc_ise.h"
 #include "blocks/uastc.h"
 #include "blocks/uastc_parts.h"
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 
 namespace tex::inline v1 {
 namespace {

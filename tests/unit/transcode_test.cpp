@@ -12,7 +12,7 @@
 #include <tex/pack.h>
 #include <tex/transcode.h>
 
-#include "blocks/uastc_transcode.h"
+#include "blocks/uastc_to.h"
 #include "unit/astcenc.h"
 #include "unit/packing.h"
 #include "unit/texel_sums.h"
@@ -112,7 +112,7 @@ std::vector<std::byte> bytes_of(const std::string& hex) {
     return bytes;
 }
 
-TEST(UastcTranscode, BlocksAreThoseOfTheTranscoder) {
+TEST(Transcode, BlocksAreThoseOfTheTranscoder) {
     for (const ShownBlock& row : kShown) {
         const std::vector<std::byte> block = bytes_of(row.block);
         std::vector<std::byte> bc7(16), bc1(8);
@@ -131,7 +131,7 @@ TEST(UastcTranscode, BlocksAreThoseOfTheTranscoder) {
 }
 
 // Beside Arm's decoder.
-TEST(UastcTranscode, AstcIsWhatItsBlocksDecodeTo) {
+TEST(Transcode, AstcIsWhatItsBlocksDecodeTo) {
     Astcenc astcenc({4, 4});
     for (const ShownBlock& row : kShown) {
         const std::vector<std::byte> astc = bytes_of(row.astc);
@@ -152,7 +152,7 @@ TEST(UastcTranscode, AstcIsWhatItsBlocksDecodeTo) {
 }
 
 // Every format shows the map, with its levels and at any extent.
-TEST(UastcTranscode, MapsAreShown) {
+TEST(Transcode, MapsAreShown) {
     const MipChain chain = packing::chain_of(packing::bumpy({37, 22}, 5));
     const Result<PackedTexture> texture = pack(chain, {Encoding::uastc});
     ASSERT_TRUE(texture);
@@ -170,7 +170,7 @@ TEST(UastcTranscode, MapsAreShown) {
     }
 }
 
-TEST(UastcTranscode, WhatNobodyTranscodesIsRefused) {
+TEST(Transcode, WhatNobodyTranscodesIsRefused) {
     Texture texture;
     texture.format = Format::bc7_unorm;
     texture.levels.push_back({{4, 4}, std::vector<std::byte>(16)});
@@ -185,7 +185,7 @@ TEST(UastcTranscode, WhatNobodyTranscodesIsRefused) {
 }
 
 // Blocks that are not valid give zeros, as the transcoder leaves them.
-TEST(UastcTranscode, HostileBlocksAreTranscoded) {
+TEST(Transcode, HostileBlocksAreTranscoded) {
     std::mt19937 random(3);
     for (int n = 0; n < 20000; ++n) {
         std::byte block[16], out[16];

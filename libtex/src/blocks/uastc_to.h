@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// uastc_transcode.h: what Basis Universal's transcoder makes of blocks of UASTC (basisu_transcoder.cpp, Apache-2.0,
+// uastc_to.h: what Basis Universal's transcoder makes of blocks of UASTC (basisu_transcoder.cpp, Apache-2.0,
 // whose rules, tables and roundings these are), without its options for higher quality. Blocks that are not valid
 // become what it leaves: zeros.
 
