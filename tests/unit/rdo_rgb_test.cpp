@@ -57,7 +57,7 @@ std::vector<std::uint8_t> decoded(Encoding encoding, const std::byte* block) {
     return {rgba[0], rgba[0] + 64};
 }
 
-// Of random blocks of all modes: the entries are those of the decoder, and blocks with other numbers decode to these.
+// Random blocks of all modes: the entries are those of the decoder, and blocks with other numbers decode to these.
 TEST(RdoRgb, EntriesAreWhatDecodersMake) {
     std::mt19937 random(7);
     for (const Encoding encoding : kRgbEncodings) {

@@ -87,7 +87,7 @@ void uastc_to_etc1(const std::byte* block, std::uint8_t rgb[16][3]) {
         for (int half = 0; half < 2; ++half) {
             halves[half].table = hints.table[0];
             for (int c = 0; c < 3; ++c) {
-                // Of 4 bits, what is above them falls into the first half.
+                // What is above 4 bits falls into the first half.
                 const int four = (hints.base[c] & 15) | (half == 0 ? hints.base[c] >> 4 : 0);
                 halves[half].base[c] = widened_base(hints.diff ? hints.base[c] : four, hints.diff);
             }

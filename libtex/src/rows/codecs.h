@@ -34,7 +34,7 @@ struct WholeBlocks {
     bool (*is_prepared)(Format format, Effort effort);
     std::size_t (*memory)(Format format, Effort effort, int width, int rows);
     int (*rows_at_once)(Format format, int width);
-    // Of 3 or 4 values: null unless blocks can be optimised.
+    // What optimise_rgb_band() needs; null elsewhere.
     BlockEntries (*read_entries)(const std::byte* block) = nullptr;
 };
 

@@ -40,7 +40,7 @@ private:
     [[nodiscard]] RgbChoice plain_choice(int block) const;
     [[nodiscard]] float bits_of(const RgbChoice& choice) const;
     void try_choice(const RdoRgbBlock& block, const RgbChoice& choice, const float squares[16]);
-    void try_whole(int block, int at);
+    void try_all(int block, int at);
     void try_front(int block, int at);
     void write(int block, const RgbChoice& choice);
 
@@ -92,7 +92,7 @@ void RgbPass::try_choice(const RdoRgbBlock& block, const RgbChoice& choice, cons
     best_ = choice;
 }
 
-void RgbPass::try_whole(int block, int at) {
+void RgbPass::try_all(int block, int at) {
     RgbChoice choice{{}, kRgbPassBytes * (block - at), kRgbPassBytes, sources_.decoded(at), at};
     std::memcpy(choice.bytes, written(at), kRgbPassBytes);
     float squares[16];
@@ -126,7 +126,7 @@ void RgbPass::choose_block(int block) {
     squared_distances(its.texels.value, plain.decoded.value, squares);
     try_choice(its, plain, squares);
     sources_.find({block, &its, rgb_angle_scale(its), least_});
-    for (const int at : sources_.wholes()) try_whole(block, at);
+    for (const int at : sources_.wholes()) try_all(block, at);
     for (const int at : sources_.fronts()) try_front(block, at);
     const auto try_near = [&](int distance) {
         const int at = block - distance / kRgbPassBytes;
@@ -134,7 +134,7 @@ void RgbPass::choose_block(int block) {
         const auto is_new = [at](const std::vector<int>& found) {
             return std::find(found.begin(), found.end(), at) == found.end();
         };
-        if (is_new(sources_.wholes())) try_whole(block, at);
+        if (is_new(sources_.wholes())) try_all(block, at);
         if (is_new(sources_.fronts())) try_front(block, at);
     };
     bool tries_before = true;
