@@ -77,6 +77,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
                     "Two bakes, without what is between the charts.");
     command.example("compare-normals rock.glb small.glb", "The maps of two models, by their materials.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
+    command.example("compare-normals bricks.png bricks.ktx2 --as etc1", "What old phones show of UASTC.");
     command.example("compare-normals bricks.exr --rdo-means 0,0.1,0.3,1 --plot curve.svg",
                     "What --rdo-mean saves in bytes, and costs in degrees.");
 }

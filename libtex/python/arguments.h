@@ -70,6 +70,7 @@ TEX_PYTHON_WORDS(Encoding);
 TEX_PYTHON_WORDS(ErrorCode);
 TEX_PYTHON_WORDS(FileValues);
 TEX_PYTHON_WORDS(Format);
+TEX_PYTHON_WORDS(GpuFormat);
 TEX_PYTHON_WORDS(GradientKernel);
 TEX_PYTHON_WORDS(GroundUnit);
 TEX_PYTHON_WORDS(HeightChannel);

@@ -112,6 +112,13 @@ void add_packing(Module& module) {
             const Swizzle swizzle = running.run([&](const Execution& e) { return guess_swizzle(texture, e); });
             return py::str(layout_name(swizzle));
         });
+    module.verb<Running>(
+        "transcode", {{"texture", "Texture"}, {"format", "str"}}, "Texture",
+        "`format` is 'astc', 'bc7', 'etc1' or 'bc1'.", [](Call& call, Running& running) -> py::object {
+            const Texture& texture = texture_from(call["texture"], "texture");
+            const auto format = Convert<GpuFormat>::from(call["format"], "format");
+            return object_of(running.run([&](const Execution& e) { return transcode(texture, format, e); }));
+        });
 }
 
 }  // namespace tex::python

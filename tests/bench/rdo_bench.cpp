@@ -40,13 +40,14 @@ std::size_t compressed(const std::vector<std::byte>& bytes) {
     return ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 19);
 }
 
-// The angles between the map and the decoded texture, in double, with z rebuilt on both sides.
-Point measure(const tex::NormalMap& map, const tex::Texture& texture) {
+// The angles between the map and the decoded texture, in double, with z rebuilt on both sides unless it is stored.
+Point measure(const tex::NormalMap& map, const tex::Texture& texture, tex::Encoding encoding) {
     const tex::Result<tex::Image> image = tex::decode(texture, 0, {1, {}});
     if (!image) std::abort();
     const bool is_alpha = texture.format == tex::Format::bc3_unorm;
     const bool is_astc = texture.swizzle == tex::kSwizzleXxxy;
     const bool is_signed = texture.format == tex::Format::bc5_snorm || texture.format == tex::Format::eac_rg11_snorm;
+    const bool has_z = tex::encoding_info(encoding).swizzle[2] == tex::Component::z;
     const tex::Plane<float>& xs = image->planes[is_alpha ? 3 : 0];
     const tex::Plane<float>& ys = image->planes[is_astc ? 3 : 1];
     std::vector<double> angles;
@@ -55,9 +56,16 @@ Point measure(const tex::NormalMap& map, const tex::Texture& texture) {
         for (int i = 0; i < map.extent().width; ++i) {
             const auto n = [&](float v) { return is_signed ? double{v} : 2.0 * double{v} - 1.0; };
             const double p[2] = {map.x.at(i, j), map.y.at(i, j)};
-            const double e[2] = {n(xs.at(i, j)), n(ys.at(i, j))};
+            double e[2] = {n(xs.at(i, j)), n(ys.at(i, j))};
             const double pz = std::sqrt(1.0 - std::min(1.0, p[0] * p[0] + p[1] * p[1]));
-            const double ez = std::sqrt(1.0 - std::min(1.0, e[0] * e[0] + e[1] * e[1]));
+            double ez = std::sqrt(1.0 - std::min(1.0, e[0] * e[0] + e[1] * e[1]));
+            if (has_z) {
+                ez = n(image->planes[2].at(i, j));
+                const double length = std::sqrt(e[0] * e[0] + e[1] * e[1] + ez * ez);
+                e[0] /= length;
+                e[1] /= length;
+                ez /= length;
+            }
             const double chord = std::hypot(p[0] - e[0], p[1] - e[1], pz - ez);
             angles.push_back(114.59155902616465 * std::asin(std::min(1.0, 0.5 * chord)));
             point.mean += angles.back();
@@ -79,7 +87,8 @@ Point pack_map(const Map& map, tex::PackOptions options, double mean) {
         for (int i = 0; i < map.width; ++i) {
             whole.x.at(i, j) = map.normals.x.at(i, j);
             whole.y.at(i, j) = map.normals.y.at(i, j);
-            whole.z.at(i, j) = 1.0f;
+            const double x = whole.x.at(i, j), y = whole.y.at(i, j);
+            whole.z.at(i, j) = static_cast<float>(std::sqrt(std::max(0.0, 1.0 - x * x - y * y)));
         }
     }
     options.rdo.mean = static_cast<float>(mean);
@@ -89,7 +98,7 @@ Point pack_map(const Map& map, tex::PackOptions options, double mean) {
     const tex::Result<tex::PackedTexture> texture = tex::pack(chain, options, {1, {}});
     const double seconds = processor_seconds() - start;
     if (!texture) std::abort();
-    Point point = measure(chain.levels[0], *texture);
+    Point point = measure(chain.levels[0], *texture, options.encoding);
     point.seconds = seconds;
     return point;
 }

@@ -51,6 +51,35 @@ TEST_F(WrittenUastc, IsAFileOfBasisUniversal) {
     EXPECT_LT(scratch_.read("u.ktx2").size(), 1.34 * static_cast<double>(scratch_.read("plain.ktx2").size()));
 }
 
+// Directions of all three components are promised, and hints go with the blocks that are copied.
+TEST_F(WrittenUastc, GetsSmallerWithinAPromisedAngle) {
+    does(
+        "pack-normals b.png -o u.ktx2 --format uastc --effort fast; "
+        "pack-normals b.png -o s.ktx2 --format uastc --effort fast --rdo-mean 0.2 --json > s.json; "
+        "check-normals s.ktx2 --fail-on warning; compare-normals b.png s.ktx2 --json > d.json; "
+        "compare-normals b.png u.ktx2 --as etc1 --json > e.json; compare-normals b.png s.ktx2 --as etc1 --json > "
+        "f.json");
+    EXPECT_LT(scratch_.read("s.ktx2").size(), 0.9 * static_cast<double>(scratch_.read("u.ktx2").size()));
+    const auto mean = [&](const std::string& name) {
+        return nlohmann::json::parse(scratch_.read(name))["degrees"]["mean"].get<double>();
+    };
+    const auto report = nlohmann::json::parse(scratch_.read("s.json"))["rdo"];
+    EXPECT_NEAR(report["mean"].get<double>(), mean("d.json"), 0.01) << "of the base level and smaller ones";
+    EXPECT_LE(report["most_growth"].get<double>(), 0.2);
+    EXPECT_LT(mean("f.json"), mean("e.json") + 0.6);
+}
+
+TEST_F(WrittenUastc, IsComparedAsGpusShowIt) {
+    does(
+        "pack-normals b.png -o u.ktx2 --format uastc; compare-normals b.png u.ktx2 --as astc --max-mean 1.2; "
+        "compare-normals b.png u.ktx2 --as bc7 --max-mean 1.3; compare-normals b.png u.ktx2 --as bc1 --max-mean 4; "
+        "compare-normals b.png u.ktx2 --as etc1 --max-mean 4 --level all --report r.html --heatmap h.png");
+    EXPECT_EQ(shell(scratch_, "compare-normals b.png u.ktx2 --as etc1 --max-mean 1.2").code, 1);
+    const Ran ran = shell(scratch_, "compare-normals u.ktx2 b.png --as bc7");
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.err.find("b.png: bc7 is made of UASTC and ETC1S"), std::string::npos) << ran.err;
+}
+
 TEST_F(WrittenUastc, IsRefusedWhereItCannotBe) {
     const auto fails = [&](const std::string& line, const std::string& reason) {
         const Ran ran = shell(scratch_, line);
@@ -58,7 +87,6 @@ TEST_F(WrittenUastc, IsRefusedWhereItCannotBe) {
         EXPECT_NE(ran.err.find(reason), std::string::npos) << ran.err;
     };
     fails("pack-normals b.png -o x.dds --format uastc", "uastc goes into .ktx2");
-    fails("pack-normals b.png -o x.ktx2 --format uastc --rdo-mean 0.5", "--rdo-mean needs --format");
     fails("pack-normals b.png -o x.ktx2 --format uastc --alpha bricks.png", "alpha");
 }
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blocks of UASTC and ETC1S of any bytes decode, each to the same texels alone as in a row; UASTC that is not valid is
-// magenta, and ETC1S does not look at bits that ETC1S does not have.
+// magenta, and ETC1S does not look at bits that ETC1S does not have. Transcoders take any block, and the entries of a
+// block of UASTC or BC7 are what it decodes to.
 
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
+#include "blocks/bc7.h"
+#include "blocks/block_entries.h"
 #include "blocks/etc1s.h"
 #include "blocks/uastc.h"
+#include "blocks/uastc_to.h"
 #include "rows/decode_rows.h"
 
 namespace {
@@ -59,6 +63,35 @@ void check_halves(const std::byte* block) {
     if (std::memcmp(codes[0], codes[1], sizeof codes[0]) != 0) std::abort();
 }
 
+void check_entries(const tex::BlockEntries& entries, const std::byte* block, const std::uint8_t decoded[kTexels][4]) {
+    std::uint8_t numbers[kTexels];
+    std::byte same[16];
+    tex::read_entry_numbers(entries, block, numbers);
+    for (int k = 0; k < kTexels; ++k) {
+        const int n = entries.subset[k] * entries.count + numbers[k];
+        if (n >= tex::BlockEntries::kMost || std::memcmp(entries.code[n], decoded[k], 4) != 0) std::abort();
+    }
+    tex::write_entry_numbers(entries, block, numbers, same);
+    if (std::memcmp(same, block, static_cast<std::size_t>(entries.front_bytes())) != 0) std::abort();
+}
+
+void check_one(const std::byte* block) {
+    std::uint8_t codes[4][kTexels], rgba[kTexels][4], rgb[kTexels][3];
+    std::uint16_t shown[kTexels][4];
+    std::byte made[16];
+    tex::uastc_to_bc7(block, made);
+    tex::uastc_to_bc1(block, made);
+    tex::uastc_to_etc1(block, rgb);
+    tex::uastc_to_astc(block, shown);
+    tex::decode_bc7(block, rgba);
+    check_entries(tex::read_bc7_entries(block), block, rgba);
+    tex::decode_uastc(block, codes);
+    for (int k = 0; k < kTexels; ++k) {
+        for (int c = 0; c < 4; ++c) rgba[k][c] = codes[c][k];
+    }
+    check_entries(tex::read_uastc_entries(block), block, rgba);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -70,5 +103,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (count > 0) check_row(format, blocks, count < kMostBlocks ? count : kMostBlocks);
     }
     if (size >= tex::kEtc1sBlockBytes) check_halves(blocks);
+    for (std::size_t b = 0; b < kMostBlocks && 16 * (b + 1) <= size; ++b) check_one(blocks + 16 * b);
     return 0;
 }

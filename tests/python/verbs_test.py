@@ -135,6 +135,18 @@ def test_unpack_and_decode_read_what_the_command_reads(commands, bricks, normals
     assert tex.decode_file(bytearray(commands.bytes("n.dds"))).extent == tex.probe("n.dds") == (512, 512)
 
 
+def test_transcode_is_what_gpus_show(normals):
+    texture = tex.pack(normals, "uastc")
+    means = {}
+    for format, shown in {"astc": "rgba16-unorm", "bc7": "bc7-unorm", "etc1": "rgb8-unorm", "bc1": "bc1-unorm"}.items():
+        made = tex.transcode(texture, format)
+        assert (made.format, made.swizzle) == (shown, texture.swizzle)
+        means[format] = tex.compare(tex.unpack(texture)[0], tex.unpack(made)[0])["mean"]
+    assert means["astc"] < means["bc7"] < means["bc1"] and means["bc7"] < means["etc1"]
+    with pytest.raises(ValueError, match="neither"):
+        tex.transcode(tex.pack(normals, "bc7"), "bc1")
+
+
 def test_unpack_reads_stored_colours(normals):
     stored = tex.pack(normals, "rgb8")
     colours = np.frombuffer(stored.levels[0], np.uint8).reshape(512, 512, 3)

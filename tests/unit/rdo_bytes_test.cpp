@@ -26,7 +26,8 @@ constexpr Expected kExpected[] = {
     {Encoding::dxt5nm, 0xf28f829dad9fadc2u},         {Encoding::bc5, 0x1dcaebd907439a6fu},
     {Encoding::bc5_snorm, 0x2ee90aff61fdb2f5u},      {Encoding::eac_rg11, 0x31ca4401b5a74cb6u},
     {Encoding::eac_rg11_snorm, 0x2f76bd9419b50ab7u}, {Encoding::astc_4x4, 0x1b552871cffe222eu},
-    {Encoding::astc_6x6, 0x77f656e77007186bu}};
+    {Encoding::astc_6x6, 0x77f656e77007186bu},       {Encoding::bc7, 0x4acf621ae537993au},
+    {Encoding::uastc, 0x188c386dba68ad35u}};
 
 NormalMap rounded(NormalMap map) {
     for (Plane<float>* plane : {&map.x, &map.y}) {

@@ -17,6 +17,8 @@ void PairOptions::add(Command& command) {
     command.choice(y_[0], "--y-a", "Y", kYAxisNames, "which way green points in A, instead of what the file says");
     command.choice(y_[1], "--y-b", "Y", kYAxisNames, "which way green points in B")
         .often(1, "which way green points in B: up or down");
+    command.choice(as_, "--as", "F", kGpuFormatNames,
+                   "B is UASTC or ETC1S: compare what a loader makes of it for a GPU that reads F");
     command
         .option("--level", "N", "the level, 0 being the base level, or all that both have",
                 [this](const std::string& text) {
@@ -54,12 +56,20 @@ Result<Texture> PairOptions::read(const ComparedMap& map, int which, const ReadO
     }
     texture->swizzle = *swizzle;
     texture->y_axis = y_[which].value_or(texture->y_axis);
-    return texture;
+    if (which == 0 || !as_) return texture;
+    auto shown = transcode(*texture, *as_, {execution.threads, silent});
+    return shown ? std::move(shown) : shown.error().of(path);
 }
 
 Result<MipChain> PairOptions::read_levels(const ComparedMap& map, int which, const ReadOptions& read_options,
                                           Console& console, const Execution& execution) {
     const std::string& path = map.path();
+    if (which == 1 && as_) {
+        const auto texture = read(map, which, read_options, console, execution);
+        if (!texture) return texture.error();
+        info_[which].y_axis = texture->y_axis;
+        return unpack(*texture, {}, execution);
+    }
     auto opened = map.open(read_options);
     if (!opened) return opened.error();
     SourceOptions options;

@@ -12,6 +12,7 @@
 #include <tex/check.h>
 #include <tex/file.h>
 #include <tex/format.h>
+#include <tex/transcode.h>
 #include <tex/types.h>
 
 #include "cli/command.h"
@@ -20,13 +21,13 @@
 
 namespace tex::cli {
 
-// --y-a, --y-b, --level, --max-mean, --max-p99, --max-p999, --max.
+// --y-a, --y-b, --as, --level, --max-mean, --max-p99, --max-p999, --max.
 class PairOptions {
 public:
     void add(Command& command);
 
     // Reads the texture of A (0) or B (1). If the file does not give its swizzle, the swizzle is guessed from the
-    // texels, with one warning for each file. The options for y override the file.
+    // texels, with one warning for each file. The options for y override the file. B is transcoded for --as.
     [[nodiscard]] Result<Texture> read(const ComparedMap& map, int which, const ReadOptions& read, Console& console,
                                        const Execution& execution);
     [[nodiscard]] Result<MipChain> read_levels(const ComparedMap& map, int which, const ReadOptions& read,
@@ -53,6 +54,7 @@ public:
 
 private:
     std::optional<YAxis> y_[2];
+    std::optional<GpuFormat> as_;
     int level_ = 0;
     bool all_levels_ = false;
     std::optional<double> max_mean_, max_p99_, max_p999_, max_;  // degrees

@@ -82,8 +82,9 @@ inline constexpr Named<Metric> kMetricNames[] = {
 // Rate-distortion optimisation: blocks that compress better, at a promised angle. Games store textures compressed
 // (zstd, LZ4, deflate), so a file gets smaller if its blocks repeat bytes of earlier blocks. The encoder may replace a
 // block by one that copies the indices, and perhaps the endpoints, of blocks shortly before it (ASTC: all but the
-// weights, or all), and takes that with the least D + lambda R (Sullivan and Wiegand, 1998): D is the sum of the angles
-// of its texels, R its estimated size as matches and literals of a Lempel-Ziv coder.
+// weights, or all; BC7 and UASTC: all but the indices, or all), and takes that with the least D + lambda R (Sullivan
+// and Wiegand, 1998): D is the sum of the angles of its texels, R its estimated size as matches and literals of a
+// Lempel-Ziv coder.
 //
 // It applies where can_optimise() says so; others ignore it. A level is divided into bands of whole rows of blocks: the
 // power of two that gives a band of the base level at least 16384 blocks and 64 rows of texels. Memory holds a few of
@@ -92,7 +93,10 @@ inline constexpr Named<Metric> kMetricNames[] = {
 // in a band, its part, has its own lambda, the greatest one found that keeps the promise.
 //
 // The promise concerns the angles between the normals of the source and those of the blocks, as compare() measures
-// them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit.
+// them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit. In
+// BC7 and UASTC, which hold z, they are between the directions of all three components. Where alpha of BC7 holds data,
+// texels are vectors of four components, the last one twice alpha, and their angles those that have chords of this
+// length: an error of one code of alpha, or of x, is 0.45 degrees.
 //
 //   mean     the mean angle of every part, so of every square and level, exceeds that of the same encoding without
 //            optimisation by at most so many degrees

@@ -50,7 +50,8 @@
 //     surface.h   integrate(), curvature(), occlusion() mesh.h      meshes, models, tangents, convert, transfer()
 //     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), steps, write_model()
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
-//     repair.h    repair()                              tex_c.h     the same for C, Rust and C#
+//     repair.h    repair()                              transcode.h transcode()
+//     tex_c.h     the same for C, Rust and C#
 //
 // Options stand beside their verb. Everything is in the inline namespace v1. Its number is that of the shared library
 // (libtex.so.1): both change with the binary interface, so that no program links to one that it was not built for.
@@ -77,6 +78,7 @@
 #include <tex/preview.h>
 #include <tex/repair.h>
 #include <tex/surface.h>
+#include <tex/transcode.h>
 #include <tex/types.h>
 
 namespace tex::inline v1 {

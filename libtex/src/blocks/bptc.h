@@ -30,6 +30,9 @@ public:
         return bits;
     }
 
+    // The next 64 bits, which stay.
+    [[nodiscard]] std::uint64_t next() const { return low_; }
+
 private:
     std::uint64_t low_ = 0, high_ = 0;
 };

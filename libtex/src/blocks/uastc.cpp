@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include "blocks/astc_ise.h"
 #include "blocks/astc_mode.h"
+#include "blocks/block_entries.h"
 #include "blocks/bptc.h"
 #include "blocks/uastc_modes.h"
+#include "blocks/uastc_parts.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -46,17 +49,44 @@ void read_endpoint_values(BptcBits& bits, int range, int count, std::uint8_t* va
     constexpr int kTritBits[] = {0, 2, 4, 5, 7, 8}, kQuintBits[] = {0, 3, 5, 7};
     const AstcRange r = kAstcRangeTable[range];
     std::uint8_t uppers[kAstcMostColors] = {};
-    const int group = r.upper == 3 ? 5 : 3;
-    for (int first = 0; r.upper > 1 && first < count; first += group) {
-        const int in_group = std::min(group, count - first);
-        unsigned packed = bits.take(r.upper == 3 ? kTritBits[in_group] : kQuintBits[in_group]);
-        const auto upper = static_cast<unsigned>(r.upper);
-        for (int k = first; k < first + in_group; ++k, packed /= upper)
-            uppers[k] = static_cast<std::uint8_t>(packed % upper);
-    }
+    // A division by a constant is a multiplication.
+    const auto read_uppers = [&](auto upper, int group, const int* group_bits) {
+        for (int first = 0; first < count; first += group) {
+            const int in_group = std::min(group, count - first);
+            unsigned packed = bits.take(group_bits[in_group]);
+            for (int k = first; k < first + in_group; ++k, packed /= upper())
+                uppers[k] = static_cast<std::uint8_t>(packed % upper());
+        }
+    };
+    if (r.upper == 3) read_uppers(std::integral_constant<unsigned, 3>(), 5, kTritBits);
+    if (r.upper == 5) read_uppers(std::integral_constant<unsigned, 5>(), 3, kQuintBits);
     for (int k = 0; k < count; ++k) {
         const unsigned stored = bits.take(r.bits) | static_cast<unsigned>(uppers[k]) << r.bits;
         values[k] = kAstcMeanings.color[range][stored];
+    }
+}
+
+void read_weights(BptcBits& bits, const UastcMode& mode, const UastcPattern& pattern, const std::uint8_t* meaning,
+                  std::uint8_t weights[2][kUastcTexels]) {
+    const int count = mode.weight_bits;
+    if (mode.subsets > 1 || count == 5) {
+        for (int k = 0; k < kUastcTexels; ++k) {
+            for (int plane = 0; plane < mode.planes; ++plane)
+                weights[plane][k] = meaning[bits.take(count - (pattern.is_anchor[k] ? 1 : 0))];
+        }
+        return;
+    }
+    // Only texel 0 is an anchor. All others have at most 60 bits.
+    const bool has_second = mode.planes == 2;
+    weights[0][0] = meaning[bits.take(count - 1)];
+    if (has_second) weights[1][0] = meaning[bits.take(count - 1)];
+    std::uint64_t rest = bits.next();
+    const unsigned mask = (1u << count) - 1;
+    for (int k = 1; k < kUastcTexels; ++k, rest >>= count) {
+        weights[0][k] = meaning[static_cast<unsigned>(rest) & mask];
+        if (!has_second) continue;
+        rest >>= count;
+        weights[1][k] = meaning[static_cast<unsigned>(rest) & mask];
     }
 }
 
@@ -68,17 +98,18 @@ struct UastcEnds {
         begin[subset] = 257 * 64 * e0 + 32;
         step[subset] = 257 * (e1 - e0);
     }
+    [[nodiscard]] std::uint8_t code(int subset, std::uint8_t weight) const {
+        return static_cast<std::uint8_t>((begin[subset] + step[subset] * weight) >> 14);
+    }
 };
 
 void interpolate(const UastcEnds& ends, int subsets, const std::uint8_t* subset, const std::uint8_t* weights,
                  std::uint8_t* codes) {
     if (subsets == 1) {
-        for (int k = 0; k < kUastcTexels; ++k)
-            codes[k] = static_cast<std::uint8_t>((ends.begin[0] + ends.step[0] * weights[k]) >> 14);
+        for (int k = 0; k < kUastcTexels; ++k) codes[k] = ends.code(0, weights[k]);
         return;
     }
-    for (int k = 0; k < kUastcTexels; ++k)
-        codes[k] = static_cast<std::uint8_t>((ends.begin[subset[k]] + ends.step[subset[k]] * weights[k]) >> 14);
+    for (int k = 0; k < kUastcTexels; ++k) codes[k] = ends.code(subset[k], weights[k]);
 }
 
 void fill(const std::uint8_t (&color)[4], std::uint8_t channels[4][16]) {
@@ -108,20 +139,92 @@ void decode_uastc(const std::byte* block, std::uint8_t channels[4][16]) {
 
     const std::uint8_t* const meaning = kAstcMeanings.weight[kUastcWeightRanges[mode.weight_bits]];
     std::uint8_t weights[2][kUastcTexels];
-    for (int k = 0; k < kUastcTexels; ++k) {
-        for (int plane = 0; plane < mode.planes; ++plane)
-            weights[plane][k] = meaning[bits.take(mode.weight_bits - (pattern->is_anchor[k] ? 1 : 0))];
-    }
+    read_weights(bits, mode, *pattern, meaning, weights);
     for (int c = 0; c < 4; ++c) {
         const int stored = mode.channels == 2 ? c / 3 : c;  // luminance stands for R, G and B
+        if (stored >= mode.channels) {
+            std::fill_n(channels[c], kUastcTexels, std::uint8_t{255});
+            continue;
+        }
         UastcEnds line = {};
         for (int s = 0; s < mode.subsets; ++s) {
             const std::uint8_t* const e = ends + 2 * (mode.channels * s + stored);
-            const bool has_ends = stored < mode.channels;
-            line.set(s, has_ends ? e[0] : 255, has_ends ? e[1] : 255);
+            line.set(s, e[0], e[1]);
         }
         interpolate(line, mode.subsets, pattern->subset, weights[c == second_channel ? 1 : 0], channels[c]);
     }
+}
+
+std::optional<UastcParts> read_uastc_parts(const std::byte* block) {
+    UastcParts parts;
+    parts.mode = kUastcModeOfBits[std::to_integer<unsigned>(block[0]) & ((1u << kLongestUastcCode) - 1)];
+    if (parts.mode == kUastcModes) return std::nullopt;
+    const UastcMode& mode = parts.row();
+    UastcHints& hints = parts.hints;
+    BptcBits bits(block);
+    bits.take(mode.code_bits);
+    if (parts.mode == kUastcSolid) {
+        for (std::uint8_t& code : parts.color) code = static_cast<std::uint8_t>(bits.take(8));
+        hints.diff = bits.take(1) != 0;
+        hints.table[0] = static_cast<std::uint8_t>(bits.take(3));
+        hints.selector = static_cast<std::uint8_t>(bits.take(2));
+        for (std::uint8_t& code : hints.base) code = static_cast<std::uint8_t>(bits.take(5));
+        return parts;
+    }
+    // Modes 10 to 12 lack a hint and the bias; those with alpha have 8 bits for EAC.
+    const bool has_all = mode.hint_bits != 17;
+    hints.bc1_ends = bits.take(1) != 0;
+    hints.bc1_weights = has_all && bits.take(1) != 0;
+    hints.flip = bits.take(1) != 0;
+    hints.diff = bits.take(1) != 0;
+    for (std::uint8_t& table : hints.table) table = static_cast<std::uint8_t>(bits.take(3));
+    if (has_all) hints.bias = static_cast<std::uint8_t>(bits.take(5));
+    bits.take(mode.hint_bits - (has_all ? 15 : 9));
+    if (mode.subsets > 1) parts.pattern_number = bits.take(mode.subsets == 2 ? 5 : 4);
+    parts.pattern = uastc_pattern(parts.mode, parts.pattern_number);
+    if (parts.pattern == nullptr) return std::nullopt;
+    parts.second_channel = read_second_channel(bits, mode);
+    read_endpoint_values(bits, mode.color_range, 2 * mode.channels * mode.subsets, parts.ends);
+    for (int k = 0; k < kUastcTexels; ++k) {
+        for (int plane = 0; plane < mode.planes; ++plane)
+            parts.weights[plane][k] =
+                static_cast<std::uint8_t>(bits.take(mode.weight_bits - (parts.pattern->is_anchor[k] ? 1 : 0)));
+    }
+    return parts;
+}
+
+BlockEntries read_uastc_entries(const std::byte* block) {
+    BlockEntries entries;
+    const std::optional<UastcParts> parts = read_uastc_parts(block);
+    if (!parts || parts->mode == kUastcSolid) {
+        std::uint8_t first[4][16];
+        decode_uastc(block, first);
+        for (int c = 0; c < 4; ++c) entries.code[0][c] = first[c][0];
+        return entries;
+    }
+    const UastcMode& mode = parts->row();
+    const int pattern_bits = mode.subsets == 1 ? 0 : mode.subsets == 2 ? 5 : 4;
+    entries.front = mode.code_bits + mode.hint_bits + pattern_bits + (mode.planes == 2 && mode.channels != 2 ? 2 : 0) +
+                    astc_ise_bits(mode.color_range, 2 * mode.channels * mode.subsets);
+    for (int plane = 0; plane < mode.planes; ++plane) entries.bits[plane] = mode.weight_bits;
+    entries.is_mixed = true;
+    entries.subsets = mode.subsets;
+    entries.count = 1 << (mode.planes * mode.weight_bits);
+    for (int k = 0; k < kUastcTexels; ++k) {
+        entries.subset[k] = parts->pattern->subset[k];
+        entries.anchors |= parts->pattern->is_anchor[k] ? 1u << k : 0u;
+    }
+    const std::uint8_t* const meaning = kAstcMeanings.weight[kUastcWeightRanges[mode.weight_bits]];
+    for (int n = 0; n < entries.total(); ++n) {
+        const int s = n / entries.count, e = n % entries.count;
+        for (int c = 0; c < 4; ++c) {
+            UastcEnds line = {};
+            line.set(0, parts->end(s, c, 0), parts->end(s, c, 1));
+            const int index = c == parts->second_channel ? e >> mode.weight_bits : e & ((1 << mode.weight_bits) - 1);
+            entries.code[n][c] = line.code(0, meaning[index]);
+        }
+    }
+    return entries;
 }
 
 }  // namespace tex::inline v1

@@ -30,9 +30,9 @@ struct CheapCopy {
 
 class CheapCopies {
 public:
-    static constexpr int kMost = 6;
+    static constexpr int kMost = 6, kRoom = 16;
 
-    // Takes no copies whose cost is not below `limit`, and at most `most`.
+    // Takes no copies whose cost is not below `limit`, and at most `most`, up to kRoom.
     explicit CheapCopies(float limit = 3e38f, int most = kMost) : most_(most), limit_(limit) {}
 
     void add(CheapCopy copy) {
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] const CheapCopy* end() const { return copies_.data() + count_; }
 
 private:
-    std::array<CheapCopy, kMost> copies_{};
+    std::array<CheapCopy, kRoom> copies_{};
     int most_;
     float limit_;
     int count_ = 0;

@@ -30,19 +30,21 @@ constexpr WholeBlocks kAstcBlocks = {
 constexpr WholeBlocks kBc7Blocks = {.values = 4,
                                     .encode = encode_bc7,
                                     .encode_values = nullptr,
-                                    .optimise = nullptr,
+                                    .optimise = optimise_rgb_band,
                                     .prepare = [](Format, Effort) {},
                                     .is_prepared = [](Format, Effort) { return true; },
                                     .memory = bc7_memory,
-                                    .rows_at_once = bc7_rows_at_once};
+                                    .rows_at_once = bc7_rows_at_once,
+                                    .read_entries = read_bc7_entries};
 constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .encode = encode_uastc,
                                       .encode_values = nullptr,
-                                      .optimise = nullptr,
+                                      .optimise = optimise_rgb_band,
                                       .prepare = [](Format, Effort) {},
                                       .is_prepared = [](Format, Effort) { return true; },
                                       .memory = uastc_memory,
-                                      .rows_at_once = uastc_rows_at_once};
+                                      .rows_at_once = uastc_rows_at_once,
+                                      .read_entries = read_uastc_entries};
 
 void decode_row_of_texels(Format format, const std::byte* texels, int width, const ChannelRows& rows, std::ptrdiff_t) {
     decode_texels(format, texels, width, rows);

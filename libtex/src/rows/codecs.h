@@ -11,6 +11,7 @@
 #include <tex/format.h>
 #include <tex/pack.h>
 
+#include "blocks/block_entries.h"
 #include "blocks/block_half.h"
 #include "kernels/decode.h"
 #include "kernels/encode.h"
@@ -27,12 +28,14 @@ struct WholeBlocks {
     // Encodes one channel; null if there is no such encoder.
     void (*encode_values)(Format format, Effort effort, const float* values, Extent extent, std::byte* blocks);
     // Null if blocks cannot be optimised.
-    void (*optimise)(const float* xy, int height, Extent level, int first, const PackOptions& options,
-                     std::byte* blocks, RdoTally* tally);  // see optimise_astc_band()
+    void (*optimise)(const float* texels, int height, Extent level, int first, const PackOptions& options,
+                     std::byte* blocks, RdoTally* tally);  // see optimise_astc_band(), optimise_rgb_band()
     void (*prepare)(Format format, Effort effort);
     bool (*is_prepared)(Format format, Effort effort);
     std::size_t (*memory)(Format format, Effort effort, int width, int rows);
     int (*rows_at_once)(Format format, int width);
+    // What optimise_rgb_band() needs; null elsewhere.
+    BlockEntries (*read_entries)(const std::byte* block) = nullptr;
 };
 
 // What formats with the same kind of block have in common.

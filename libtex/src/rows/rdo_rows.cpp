@@ -14,6 +14,8 @@
 #include "rows/rdo_band.h"
 #include "rows/rdo_budget.h"
 #include "rows/rdo_pass.h"
+#include "rows/rdo_rgb_band.h"
+#include "rows/rdo_rgb_pass.h"
 #include "rows/zstd_size.h"
 
 namespace tex::inline v1 {
@@ -233,6 +235,14 @@ void optimise_astc_band(const float* xy, int height, Extent level, int first, co
     const RdoAstcBand band = read_astc_band(xy, height, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_astc_pass(band, literals); }, options, blocks, tally);
+}
+
+void optimise_rgb_band(const float* texels, int height, Extent level, int first, const PackOptions& options,
+                       std::byte* blocks, RdoTally* tally) {
+    assert(is_optimised(options) && codec_of(options.encoding).whole != nullptr);
+    const RdoRgbBand band = read_rgb_band(texels, height, level, first, options, blocks);
+    optimise_blocks(
+        band, [&band](const ByteCounts& literals) { return rdo_rgb_pass(band, literals); }, options, blocks, tally);
 }
 
 }  // namespace tex::inline v1

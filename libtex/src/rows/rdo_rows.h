@@ -65,4 +65,8 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Exte
 void optimise_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
                         std::byte* blocks, RdoTally* tally);
 
+// BC7 and UASTC: of what encode_bc7() and encode_uastc() have written.
+void optimise_rgb_band(const float* texels, int height, Extent level, int first, const PackOptions& options,
+                       std::byte* blocks, RdoTally* tally);
+
 }  // namespace tex::inline v1
