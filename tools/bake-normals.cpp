@@ -166,8 +166,8 @@ Result<void> BakeNormals::process(cli::Job& job) {
     const bool is_metres = channel == HeightChannel::terrain_rgb || channel == HeightChannel::terrarium;
     if (is_metres && !baked->is_stated && !reader_.strength.is_given && !reader_.strength.measured) {
         job.warn(
-            "heights are metres, and nothing says how wide a texel is: 1 m is assumed; --world-size, the width of the "
-            "map in metres, gives true slopes");
+            "heights are metres, and nothing says how wide a texel is: 1 m is assumed; --height-range 1 --world-size W "
+            "gives true slopes, where W is the width of the map in metres");
     }
     warn_of_border(job, baked->border_ratio);
     warn_of_reach(job, baked->occlusion_reach);

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # .git/hooks/pre-commit: repairs staged normal maps. It undoes what the texels prove, in the files of the working tree,
 # and then refuses the commit, so that somebody looks at the maps and stages them again. repair-normals is in the Debian
-# package libtex-tools. pre-commit.sh checks without changing anything.
+# package libtex-tools. pre-commit.sh checks without changing anything; run it, too, where the direction of green is
+# required, which repair-normals does not know.
 set -eu
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT

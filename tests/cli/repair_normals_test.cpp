@@ -65,6 +65,15 @@ TEST_F(RepairNormals, MendsSeveralFilesAndLeavesCleanOnesAsTheyAre) {
     EXPECT_NE(ran.out.find("3 maps: 2 repaired, 1 without a fault to repair\n"), std::string::npos) << ran.out;
 }
 
+// Parts of both directions are told apart by a straight line alone, which is looked for with --likely.
+TEST_F(RepairNormals, PromisesNoMoreThanItMayDo) {
+    scratch_.add_sample("broken/N402-mixed-y.png", "mixed.png");
+    const Ran ran = go({"mixed.png", "-o", "out.png"});
+    EXPECT_EQ(ran.code, 1);
+    EXPECT_NE(ran.out.find("; --likely repairs it if a straight line divides the two parts\n"), std::string::npos)
+        << ran.out;
+}
+
 TEST_F(RepairNormals, APlanIsPrintedAndNothingWritten) {
     const auto before = scratch_.list();
     const Ran text = go({"light.png", "clean.png", "--dry-run"});

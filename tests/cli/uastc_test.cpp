@@ -104,6 +104,8 @@ TEST_F(WrittenUastc, ReplacesTheMapsOfAModel) {
     EXPECT_FALSE(model["textures"][0].contains("source"));
     EXPECT_EQ(model["extensionsRequired"][0], "KHR_texture_basisu");
     EXPECT_GT(number("out/b.ktx2", 40), 1u) << "viewers build no levels";
+    does("mkdir small; pack-normals m.gltf -o small/m.gltf --format uastc --max-size 64");
+    EXPECT_EQ(number("small/b.ktx2", 20), 64u) << "the width";
 }
 
 }  // namespace tex::cli

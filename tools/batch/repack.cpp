@@ -94,7 +94,7 @@ Result<void> PackCommand::pack_image(Job& job, const std::vector<std::shared_ptr
     const auto bytes = std::make_shared<std::vector<std::byte>>();
     with.write.into = bytes;
     // Viewers build no levels of compressed textures.
-    if (job.task.container == Container::ktx2 && !with.mip) with.mip.emplace();
+    if (job.task.container == Container::ktx2 && !with.mip) with.mip.emplace().max_side = with.max_side;
     if (auto opened = first.open(with.source.read); !opened) return opened;
     const auto packed = pack_file(first.path, first.name(), job.task.container, with, execution);
     if (!packed) return packed.error();

@@ -99,7 +99,7 @@ void StrengthOptions::add(Command& command, bool can_measure) {
         is_given = !several.empty();
         if (several.size() > 1) throw UsageError(join(several, " and ") + " contradict each other: give one");
         if (command.given("--world-size") && !height_range)
-            throw UsageError("--world-size does nothing without --height-range");
+            throw UsageError("--world-size does nothing without --height-range, which is 1 where heights are metres");
         if (height_range && !command.given("--world-size")) throw UsageError("--height-range needs --world-size");
         if (measured && vertical_scale != 1.0f)
             throw UsageError("--vertical-scale contradicts --bumpiness auto: give one");

@@ -2,6 +2,7 @@
 
 #include "reports/kinds.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <string_view>
@@ -23,9 +24,23 @@ bool holds_normals(const CheckReport& report) {
 
 }  // namespace
 
+std::string swizzle_word(const Swizzle& swizzle) {
+    std::string word = layout_name(swizzle);
+    if (word != to_string(swizzle)) return word;
+    std::string channels;
+    for (const Component component : {Component::x, Component::y, Component::z}) {
+        const auto at = static_cast<std::size_t>(std::find(swizzle.begin(), swizzle.end(), component) - swizzle.begin());
+        if (at < swizzle.size())
+            channels += "rgba"[at];
+        else if (component != Component::z)
+            return word;
+    }
+    return channels;
+}
+
 std::string kind_text(const CheckReport& report) {
     const bool has_normals = holds_normals(report);
-    const std::string layout = has_normals           ? layout_name(report.swizzle)
+    const std::string layout = has_normals           ? swizzle_word(report.swizzle)
                                : report.height_bytes ? std::string(name_of(kHeightChannelNames, *report.height_bytes))
                                                      : std::string(kNothing);
     const std::string_view y = has_normals && report.y.y ? name_of(kYAxisNames, *report.y.y) : kNothing;

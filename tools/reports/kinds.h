@@ -8,8 +8,12 @@
 #include <string>
 
 #include <tex/check.h>
+#include <tex/format.h>
 
 namespace tex::cli {
+
+// The layout as --swizzle takes it: its name, or the channels of x, y and z, such as "abg".
+[[nodiscard]] std::string swizzle_word(const Swizzle& swizzle);
 
 // A row: the kind, the layout and the direction of green of normals, the confidence, the name; at the end a line break.
 [[nodiscard]] std::string kind_text(const CheckReport& report);

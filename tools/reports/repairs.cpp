@@ -39,6 +39,8 @@ Json step_json(const RepairStep& step) {
 
 // Slopes alone do not show which of green and red is mirrored; heights do.
 std::string_view what_repairs(const FaultLeft& fault) {
+    if (fault.certainty == RepairClass::likely && fault.finding.rule->id == "N402")
+        return "; --likely repairs it if a straight line divides the two parts";
     if (fault.certainty == RepairClass::likely) return "; --likely repairs it";
     if (fault.certainty != RepairClass::choice) return "";
     if (fault.finding.rule->id == "N210") return "; if these are heights, --bumpiness B bakes them";

@@ -54,6 +54,11 @@ bool has_error(const CheckReport& report) {
                                        [](const Finding& finding) { return finding.severity == Severity::error; });
 }
 
+bool has_rule(const CheckReport& report, std::string_view id) {
+    return std::any_of(report.findings.begin(), report.findings.end(),
+                       [id](const Finding& finding) { return finding.rule->id == id; });
+}
+
 // What a rule's only step says about normals, as TOML.
 std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const std::string& layout) {
     std::vector<std::string> settings;
@@ -164,6 +169,26 @@ public:
         return text;
     }
 
+    // What a rule says of files that their texels do not show.
+    [[nodiscard]] std::string caveats(const InferredRule& rule) const {
+        std::string text;
+        std::vector<std::string> unknown;
+        for (std::size_t k = 0; k < files_.size(); ++k) {
+            const bool is_of_rule =
+                std::find(rule.files.begin(), rule.files.end(), files_[k].path) != rule.files.end();
+            if (is_of_rule && holds_normals(k) && !reports_[k].y.y) unknown.push_back(files_[k].path);
+        }
+        if (!unknown.empty() && unknown.size() == rule.files.size()) {
+            text += "# A guess: the texels do not show where green points.\n";
+        } else if (!unknown.empty()) {
+            text += "# A guess for these, whose texels do not show where green points; it is so in the others:\n";
+            for (const std::string& path : unknown) text += fmt::format("#     {}\n", printable(path));
+        }
+        if (rule.settings.find("drop = true") != std::string::npos)
+            text += "# What their other channels hold, such as heights or gloss in alpha, is left out (drop).\n";
+        return text;
+    }
+
     [[nodiscard]] KindTotals totals() const {
         KindTotals totals;
         for (const CheckReport& report : reports_) totals.add(report);
@@ -186,13 +211,15 @@ private:
         } else if (is_normals && format_info(report.format).has_blocks()) {
             why_not_[k] = "normals that are compressed already";
         } else if (is_normals) {
-            const std::string guess = layout_name(report.swizzle);
-            const std::string layout =
-                report.swizzle == kSwizzleXy && format_info(report.format).channels > 2 ? guess : "";
+            // pack-normals reads other data in blue, and the channels of the X-Ray engine, only where it is told.
+            const bool is_labpbr = report.swizzle == kSwizzleXy && format_info(report.format).channels > 2;
+            const std::string layout = is_labpbr || has_rule(report, "N223") ? swizzle_word(report.swizzle) : "";
             if (report.y.y) {
                 file.settings = pack_step(report.y.y, report, layout);
             } else {
-                for (const YAxis y : {YAxis::up, YAxis::down}) file.also.push_back(pack_step(y, report, layout));
+                // LabPBR has green down.
+                for (const YAxis y : {is_labpbr ? YAxis::down : YAxis::up, is_labpbr ? YAxis::up : YAxis::down})
+                    file.also.push_back(pack_step(y, report, layout));
             }
             return;
         } else if (report.kind == PictureKind::object_space) {
@@ -237,11 +264,11 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "outputs = [ { format = \"bc5\", y = \"up\", mips = \"all\" } ]\n";
     for (const InferredRule& rule : rules) {
         const bool bakes = rule.settings.starts_with(kBakeStep);
-        text +=
-            fmt::format("\n# {} of {} file{}{}.\n[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
-                        rule.files.size(), rule.files.size() == 1 ? "" : "s",
-                        bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
-                        list_of(rule.match));
+        text += fmt::format(
+            "\n# {} of {} file{}{}.\n{}[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals", rule.files.size(),
+            rule.files.size() == 1 ? "" : "s",
+            bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
+            tree.caveats(rule), list_of(rule.match));
         if (!rule.exclude.empty()) text += fmt::format("exclude = {}\n", list_of(rule.exclude));
         text += fmt::format("steps = [ {} ]\n", rule.settings);
     }
