@@ -23,30 +23,36 @@ using JsonValue = nlohmann::json;
 
 constexpr double kPi = 3.14159265358979323846;
 
-// A sphere of radius 1 whose UVs are longitude and latitude.
-std::string sphere(int columns, int rows, const std::string& material) {
+// A sphere of radius 1 whose UVs are longitude and latitude or, with a ring of that radius, a torus.
+std::string sphere(int columns, int rows, const std::string& material, double ring = 0.0) {
     GltfMaker maker;
-    std::vector<float> positions, uvs;
+    std::vector<float> positions, normals, uvs;
     std::vector<std::uint16_t> indices;
+    const bool is_torus = ring > 0.0;
     for (int j = 0; j <= rows; ++j) {
         for (int i = 0; i <= columns; ++i) {
-            const double u = double(i) / columns, v = double(j) / rows, a = 2.0 * kPi * u, b = kPi * v;
-            for (const double x : {std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)})
-                positions.push_back(static_cast<float>(x));
+            const double u = double(i) / columns, v = double(j) / rows;
+            const double a = 2.0 * kPi * u, b = (is_torus ? 2.0 : 1.0) * kPi * v;
+            const double n[] = {std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)};
+            const double centre[] = {ring * std::cos(a), 0.0, -ring * std::sin(a)};
+            for (int k = 0; k < 3; ++k) {
+                positions.push_back(static_cast<float>(centre[k] + (is_torus ? 0.4 : 1.0) * n[k]));
+                normals.push_back(static_cast<float>(n[k]));
+            }
             uvs.insert(uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
         }
     }
     for (int j = 0; j < rows; ++j) {
         for (int i = 0; i < columns; ++i) {
             const int a = j * (columns + 1) + i, b = a + columns + 1;
-            if (j < rows - 1)
+            if (is_torus || j < rows - 1)
                 for (const int k : {a, b, b + 1}) indices.push_back(static_cast<std::uint16_t>(k));
-            if (j > 0)
+            if (is_torus || j > 0)
                 for (const int k : {a, b + 1, a + 1}) indices.push_back(static_cast<std::uint16_t>(k));
         }
     }
     maker.add(positions, "VEC3", 5126);
-    maker.add(positions, "VEC3", 5126);
+    maker.add(normals, "VEC3", 5126);
     maker.add(uvs, "VEC2", 5126);
     maker.add(indices, "SCALAR", 5123);
     return maker.glb(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":0})",
@@ -109,35 +115,72 @@ protected:
     Scratch scratch_;
 };
 
-// The map of a coarse sphere, decoded as a viewer does, against the formula of a sphere at the places that rays hit.
-TEST_F(Lods, ShowTheNormalsOfASphere) {
-    does(
-        "transfer-normals low.glb high.glb -o lod.glb --extent 128 --format rgb16 --quiet; "
-        "transfer-normals low.glb high.glb -o n.png --position-out p.exr --extent 128 --quiet");
-    const Model lod = model("lod.glb");
-    ASSERT_EQ(lod.maps.size(), 1u);
-    EXPECT_EQ(lod.mesh.parts[0].tangents.size(), lod.mesh.parts[0].positions.size());
+namespace {
+
+// The mean angle between the map of a coarse body, decoded as a viewer does, and the formula of the body at the places
+// that rays hit, in degrees.
+double angle_from_formula(const Model& lod, const NormalMap& map, const Image& hits, double ring) {
     const auto part = select_part(lod.mesh, {});
-    ASSERT_TRUE(part);
+    EXPECT_TRUE(part);
     EXPECT_EQ(part->source, TangentSource::file);
-    const auto decoded = to_object_space(map_of(lod), {part->part, part->tangents});
-    const auto hits = read_image(scratch_.path("p.exr"));
-    ASSERT_TRUE(decoded && hits);
+    const auto decoded = to_object_space(map, {part->part, part->tangents});
+    EXPECT_TRUE(decoded);
     double sum = 0.0;
     int count = 0;
     for (int j = 0; j < 128; ++j) {
         for (int i = 0; i < 128; ++i) {
             if (decoded->coverage.at(i, j) != Coverage::triangle) continue;
-            const double x = hits->planes[0].at(i, j), y = hits->planes[1].at(i, j), z = hits->planes[2].at(i, j);
-            const NormalMap& map = decoded->map;
+            double x = hits.planes[0].at(i, j), y = hits.planes[1].at(i, j), z = hits.planes[2].at(i, j);
+            const double around = std::sqrt(x * x + z * z), nearer = ring > 0.0 ? 1.0 - ring / around : 1.0;
+            x *= nearer;
+            z *= nearer;
+            const NormalMap& seen = decoded->map;
             const double cosine =
-                (x * map.x.at(i, j) + y * map.y.at(i, j) + z * map.z.at(i, j)) / std::sqrt(x * x + y * y + z * z);
+                (x * seen.x.at(i, j) + y * seen.y.at(i, j) + z * seen.z.at(i, j)) / std::sqrt(x * x + y * y + z * z);
             sum += std::acos(std::min(1.0, cosine)) * 180.0 / kPi;
             ++count;
         }
     }
     EXPECT_GT(count, 14000);
-    EXPECT_LT(sum / count, 0.3);
+    return sum / count;
+}
+
+}  // namespace
+
+TEST_F(Lods, ShowTheNormalsOfASphereAndATorus) {
+    for (const double ring : {0.0, 1.0}) {
+        scratch_.write("low.glb", sphere(ring > 0.0 ? 32 : 16, ring > 0.0 ? 16 : 8, R"({"name":"Skin"})", ring));
+        scratch_.write("high.glb", sphere(ring > 0.0 ? 256 : 128, ring > 0.0 ? 128 : 64, R"({"name":"Skin"})", ring));
+        does(
+            "transfer-normals low.glb high.glb -o lod.glb --extent 128 --format rgb16 --quiet; "
+            "transfer-normals low.glb high.glb -o n.png --position-out p.exr --extent 128 --quiet --hit nearest");
+        const Model lod = model("lod.glb");
+        ASSERT_EQ(lod.maps.size(), 1u);
+        EXPECT_EQ(lod.mesh.parts[0].tangents.size(), lod.mesh.parts[0].positions.size());
+        const auto hits = read_image(scratch_.path("p.exr"));
+        ASSERT_TRUE(hits);
+        EXPECT_LT(angle_from_formula(lod, map_of(lod), *hits, ring), 0.3) << ring;
+    }
+}
+
+// The original, and the low model with its old map, here none, and the new one.
+TEST_F(Lods, ReportsShowThemBesideTheirOriginal) {
+    const Ran ran =
+        does("transfer-normals low.glb high.glb -o lod.glb --extent 128 --report page.html --json --no-sync");
+    const JsonValue seen = JsonValue::parse(ran.out)["seen"][0];
+    EXPECT_EQ(seen["material"], "Skin");
+    // A smooth sphere needs no map: what both leave is the shape's.
+    EXPECT_GT(seen["old"]["codes"].get<double>(), 0.5) << ran.out;
+    EXPECT_NEAR(seen["new"]["codes"].get<double>(), seen["old"]["codes"].get<double>(), 0.5) << ran.out;
+    EXPECT_NEAR(seen["new"]["degrees"].get<double>(), seen["old"]["degrees"].get<double>(), 0.5) << ran.out;
+    const std::string page = scratch_.read("page.html");
+    for (const std::string text :
+         {"1 model", "data-map=\"0\" data-mesh=\"", "data-map=\"2\" data-mesh=\"", "\" data-follows", "\" data-leads",
+          "<figcaption>the original</figcaption>", "<figcaption>the LOD with the old map</figcaption>",
+          "<figcaption>the LOD with the new map</figcaption>"})
+        EXPECT_NE(page.find(text), std::string::npos) << text;
+    refuses("transfer-normals low.glb high.glb -o lod2.glb --report high.glb", 2, "high.glb");
+    refuses("transfer-normals low.glb high.glb -o lod2.glb --report lod2.glb", 2, "lod2.glb");
 }
 
 // x of 0.6 is a slope of 0.75; half of it is what the material shows.
@@ -290,7 +333,7 @@ TEST_F(Lods, RaysPassWhereAMaskHasHoles) {
             "contradict each other");
 }
 
-// The same with an OBJ file, whose materials are in another file: map_d is 0 in its left half.
+// An OBJ file has its materials in another file: map_d is 0 in its left half.
 TEST_F(Lods, RaysPassWhereMapDHasHoles) {
     write_squares("low.glb", {R"({"name":"ground"})"}, "");
     does("mkdir mtl; convert -size 8x16 xc:black -size 8x16 xc:white +append 'mtl/leaf d.png'");

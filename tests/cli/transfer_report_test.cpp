@@ -38,28 +38,6 @@ TEST_F(TransferPage, ShowsBothMeshes) {
     EXPECT_TRUE(scratch_.read("again.html") == page_);
 }
 
-// Of a model: the original, and the low model with its old map and the new one.
-TEST_F(TransferPage, ShowsModelsBesideTheirOriginal) {
-    does({"crate_low.glb", "crate_high.glb", "-o", "lod.glb", "--extent", "128", "--report", "page.html", "--quiet"});
-    page_ = scratch_.read("page.html");
-    has("1 model");
-    has("data-map=\"0\" data-mesh=\"0\" data-y=\"up\"");
-    has(" data-follows");
-    has("data-map=\"2\" ");
-    has(" data-leads");
-    for (const char* const caption : {"the original", "the LOD with the old map", "the LOD with the new map"})
-        has(std::string("<figcaption>") + caption + "</figcaption>");
-    has("Nothing to warn of.");
-    const auto seen = reports(
-        {"crate_low.glb", "crate_high.glb", "-o", "lod.glb", "--extent", "128", "--report", "again.html"})["seen"][0];
-    // The low crate is a box without a map, and the bevels of the high one are in the new map.
-    EXPECT_LT(seen["new"]["codes"], 0.5 * seen["old"]["codes"].get<double>());
-    EXPECT_LT(seen["new"]["degrees"], 0.5 * seen["old"]["degrees"].get<double>());
-    EXPECT_TRUE(scratch_.read("again.html") == page_);
-    const Ran ran = go({"crate_low.glb", "crate_high.glb", "-o", "lod.glb", "--report", "crate_high.glb"});
-    EXPECT_EQ(ran.code, 2) << ran.err;
-}
-
 TEST_F(TransferPage, ShowsMissedTexelsAndFailures) {
     const Ran ran = go({"crate_low.glb", "crate_high.glb", "-o", "n.png", "--report", "page.html", "--front", "1%",
                         "--back", "1%", "--missed-out", "m.png", "--max-missed", "0.1"});

@@ -194,8 +194,9 @@ TEST_F(ModelTangentsTest, NodesNoLongerMirror) {
             EXPECT_EQ(scene_of(mesh("out.glb"), true), scene_of(mesh("m.glb"), false)) << one.nodes;
             const json before = document("m.glb"), after = document("out.glb");
             EXPECT_EQ(after["meshes"].size(), before["meshes"].size() + one.meshes) << one.nodes;
-            if (mode.empty())  // the strip has seams, where vertices are copied
-                EXPECT_EQ(after["accessors"].size(), before["accessors"].size() + one.accessors) << one.nodes;
+            const std::size_t more = after["accessors"].size() - before["accessors"].size();
+            EXPECT_TRUE(more == one.accessors || !mode.empty())
+                << one.nodes << more;  // the strip gets further vertices
         }
     }
 }

@@ -222,7 +222,7 @@ Result<void> HighMeshes::read_alphas(const std::string& name, const MeshReadOpti
     return {};
 }
 
-// The same of OBJ files: map_d makes holes, and d alone blends.
+// In OBJ files, map_d makes holes, and d alone blends.
 void HighMeshes::read_obj_alphas(const std::string& name, Mesh& mesh, std::vector<PartAlpha>& alphas) {
     const ObjMaterials materials = obj_materials(name);
     for (std::size_t m = 0; m < alphas.size() && !materials.alphas.empty(); ++m) {

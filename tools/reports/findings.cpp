@@ -30,7 +30,7 @@ Json region_json(const Region& region) {
     return json;
 }
 
-// Of several lines about a map, the first one names it. Long names of materials and images are cut in the others.
+// The first line about a map names it. Long names of materials and images are cut in the others.
 std::string line_title(const CheckReport& report, bool is_first) {
     constexpr std::size_t kLong = 60, kKept = 24;
     if (is_first || report.map.size() <= kLong) return printable(title_of(report));

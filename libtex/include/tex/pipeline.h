@@ -459,8 +459,8 @@ struct ModelFiles {
     std::vector<std::string> outside = {};  // URIs of what is not in its folder: they stay as they are
     int compressed = 0;                     // parts that get no tangents, because Draco compresses them
     int mirrors = 0;                        // nodes that mirrored parts with these tangents, and no longer do
-    int left_mirrors = 0;  // nodes that still do: they have instances, Draco compresses their mesh, or animations point
-                           // at them
+    int left_mirrors = 0;                   // nodes that still do: they have instances, or animations point at them,
+                                            // as KHR_animation_pointer does
 };
 
 // The files that write_model() would write. The bytes of the pictures do not matter, nor do values of tangents.
