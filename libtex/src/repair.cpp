@@ -140,6 +140,8 @@ private:
     Result<bool> next_step(Repaired& done) {
         const std::span<const RuleRepair> rows = rule_repairs();
         tries_.resize(rows.size());
+        const bool has_curve = std::any_of(done.steps.begin(), done.steps.end(),
+                                           [](const RepairStep& step) { return takes_curve_back(step.kind); });
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const Finding* const finding = find_finding(report_, rows[k].rule);
             if (finding == nullptr || !takes_part(options_, *finding->rule) || tries_[k] == kMostStepsOfRow) continue;
@@ -147,7 +149,7 @@ private:
             auto steps = steps_of(rows[k], found);
             if (!steps) return steps.error();
             for (RepairStep& step : *steps) {
-                if (!is_allowed(step)) continue;
+                if (!is_allowed(step) || (has_curve && takes_curve_back(step.kind))) continue;
                 auto state = try_step(step);
                 if (!state) {
                     if (state.error().code != ErrorCode::unsupported) return state.error();

@@ -47,6 +47,10 @@ bool proves(RepairKind kind) {
            kind != RepairKind::normalize && kind != RepairKind::rebuild_levels;
 }
 
+bool takes_curve_back(RepairKind kind) {
+    return kind == RepairKind::undo_tone || kind == RepairKind::encode_srgb || kind == RepairKind::decode_srgb;
+}
+
 Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution) {
     const auto base = [&](const Texture& from) -> Result<NormalMap> {
         Texture one;

@@ -21,6 +21,9 @@ namespace tex::inline v1 {
 // Whether a step of this kind undoes what happened to normals. Vectors can be made unit, and turned, in any picture.
 [[nodiscard]] bool proves(RepairKind kind);
 
+// Whether a step takes a curve back. A second one would undo the first, or explain what the first got wrong.
+[[nodiscard]] bool takes_curve_back(RepairKind kind);
+
 // The angle between the normals of both base levels; 0 if one has none.
 [[nodiscard]] Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution);
 
