@@ -2,7 +2,7 @@
 // node uastc.mjs MODULES BIN FILE...: UASTC by direction beside Basis Universal, as transcoders show it.
 // MODULES is a node_modules folder with three (0.187) and ktx2-encoder (0.6.0), which are not needed otherwise; BIN has
 // the commands. Prints mean angles in degrees of the texels that three's basis_transcoder.wasm gives for each target.
-// Fails if its RGBA32 differs from what libtex decodes.
+// Fails if its RGBA32 differs from what libtex decodes, or an angle from that of compare-normals --as.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -85,6 +85,16 @@ function judge(path, like, reference) {
         const shown = join(scratch, name + ".ktx2");
         write(shown, format, like, convert(blocks, like));
         const report = JSON.parse(run("compare-normals", "--json", reference, shown));
+        if (name !== "RGBA32") {
+            const own = JSON.parse(run("compare-normals", "--json", reference, path, "--as", name.toLowerCase()));
+            const kRounding = name === "ASTC" ? 2e-3 : 1e-6; // what ASTC decodes to is rounded to 16 bits
+            for (const figure of ["mean", "p99.9", "max"]) {
+                if (Math.abs(own.degrees[figure] - report.degrees[figure]) > kRounding) {
+                    console.error(`${path}: --as ${name.toLowerCase()} is not what the transcoder makes`);
+                    process.exitCode = 1;
+                }
+            }
+        }
         return report.degrees.mean;
     });
     file.close();

@@ -93,7 +93,7 @@ struct OneColor {
         int error = 1 << 20;
         std::uint8_t end[2] = {};
     };
-    static constexpr int kIndex6 = 5, kWeight6 = 21, kIndex5 = 1, kWeight5 = 21;
+    static constexpr int kIndex6 = 5, kIndex5 = 1, kWeight = 21;
     std::array<std::array<Ends, 256>, 2> mode6;
     std::array<Ends, 256> mode5;
 
@@ -107,7 +107,7 @@ struct OneColor {
     static void fill(std::array<Ends, 256>& table, const Meaning& meaning) {
         for (int low = 0; low < 128; ++low) {
             for (int high = 0; high < 128; ++high) {
-                const int value = bptc_between(meaning(low), meaning(high), kWeight6);
+                const int value = bptc_between(meaning(low), meaning(high), kWeight);
                 for (int code = std::max(0, value - 2); code <= std::min(255, value + 2); ++code) {
                     Ends& ends = table[static_cast<std::size_t>(code)];
                     const int error = (value - code) * (value - code);
