@@ -33,12 +33,6 @@ namespace {
 
 using namespace tex;
 
-// Whether several triangles share most texels, as where UVs tile a picture. Mirrored halves of a model do not: each
-// texel has two.
-bool repeats(const TransferredMaps& maps, int subsamples) {
-    return maps.overlaps + maps.moved > 2 * maps.covered * subsamples * subsamples;
-}
-
 class TransferNormals : public cli::Converter {
 public:
     explicit TransferNormals(const cli::ProgramRow& row);
@@ -159,9 +153,7 @@ void TransferNormals::add_pictures(const std::vector<std::string>& models, std::
     MeshReadOptions how;
     how.reader = running.read;
     for (const std::string& model : models) {
-        if (pictures_.takes_alpha()) {
-            for (std::string& file : cli::obj_materials(model).files) files_of.push_back(std::move(file));
-        }
+        if (pictures_.takes_alpha()) cli::add_obj_files(model, files_of);
         if (!pictures_.takes_own() && !(pictures_.takes_alpha() && cli::has_cutouts(model, how))) continue;
         for (std::string& file : cli::files_beside_model(model, how))
             if (!file.empty()) files_of.push_back(std::move(file));
@@ -337,7 +329,7 @@ Result<bool> TransferNormals::make_picture(cli::Job& job, const cli::HighPicture
     const Extent of_orm = orm->planes.empty() ? extent : orm->planes.front().extent();
     auto maps = cast(job, meshes, pictures, extent, occlusion != nullptr && of_orm == extent);
     if (!maps) return maps.error();
-    if (repeats(*maps, rays_.transfer().subsamples)) {
+    if (cli::repeats(*maps, rays_.transfer().subsamples)) {
         job.warn("its UVs repeat the picture, so that no map can be made for it; it stays as it is");
         return false;
     }

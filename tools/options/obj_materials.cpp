@@ -133,4 +133,8 @@ ObjMaterials obj_materials(const std::string& mesh) {
     return all;
 }
 
+void add_obj_files(const std::string& mesh, std::vector<std::string>& files) {
+    for (std::string& file : obj_materials(mesh).files) files.push_back(std::move(file));
+}
+
 }  // namespace tex::cli

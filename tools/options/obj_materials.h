@@ -23,5 +23,7 @@ struct ObjMaterials {
 // that lead elsewhere, are left out, as many OBJ files come without these files. Only the first 16 MiB of each file are
 // looked at. Nothing for other meshes.
 [[nodiscard]] ObjMaterials obj_materials(const std::string& mesh);
+// Adds these files to a list.
+void add_obj_files(const std::string& mesh, std::vector<std::string>& files);
 
 }  // namespace tex::cli

@@ -373,4 +373,8 @@ Result<void> TransferMaps::write_colors(Job& job, const MapOutput& output, Image
     return {};
 }
 
+bool repeats(const TransferredMaps& maps, int subsamples) {
+    return maps.overlaps + maps.moved > 2 * maps.covered * subsamples * subsamples;
+}
+
 }  // namespace tex::cli

@@ -74,6 +74,10 @@ private:
 // "rays reach 0.1 in front and 0.2 behind; heights are from -0.05 to 0.06"
 [[nodiscard]] std::string reach_of(const TransferredMaps& maps);
 
+// Whether several triangles share most texels, as where UVs tile a picture. Mirrored halves of a model do not: each
+// texel has two.
+[[nodiscard]] bool repeats(const TransferredMaps& maps, int subsamples);
+
 // --object-out, --height-out, --position-out, --occlusion-out, --occlusion-into, --bent-out, --thickness-out,
 // --color-out, --vertex-color-out, --missed-out.
 class TransferMaps {
