@@ -109,20 +109,6 @@ ToneCandidate sharpened(const ToneCandidate& best, const CombFit& in_codes, cons
     return chosen;
 }
 
-// z may contradict what the codes show by so much, where vectors were no unit vectors before.
-bool agrees(ToneCandidate& found, const ToneTexels& texels) {
-    constexpr double kMostMore = 1.75;
-    ZForm best = ZForm::whole;
-    found.error = error_of(found.curve, texels);
-    for (const ZForm form : {ZForm::inverted, ZForm::from_zero}) {
-        const double error = error_of(found.curve, texels, form);
-        if (error >= found.error) continue;
-        found.error = error;
-        best = form;
-    }
-    return found.error <= kMostMore * error_of({}, texels, best);
-}
-
 // The curve and the form of z that fit best, and the error of the best curve of the other family. The usual form is
 // taken unless another fits much better.
 struct BestTone {
@@ -145,6 +131,17 @@ BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels)
     return chosen;
 }
 
+// Whether z allows what the codes show. A histogram keeps the traces of all that was ever done to a map, also of levels
+// that its maker set and that nobody wants back, so that z decides where vectors are unit vectors by some curve; where
+// they are by none, the curve must not make them worse.
+bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double as_stored) {
+    constexpr double kFits = 1.5, kMostMore = 1.75, kMostMoreCodes = 0.5;  // codes
+    found.error = error_of(found.curve, texels);
+    for (const ZForm form : {ZForm::inverted, ZForm::from_zero})
+        found.error = std::min(found.error, error_of(found.curve, texels, form));
+    return found.error <= (least < kFits ? kMostMore * least + kMostMoreCodes : as_stored);
+}
+
 double least_error(const ToneTexels& texels) {
     double least = 1e9;
     for (const ZForm form : possible_forms(texels)) least = std::min(least, error_of({}, texels, form));
@@ -165,7 +162,9 @@ std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, con
     const CombFit in_codes = comb.best(round);
     if (!in_codes.is_proof() || in_codes.score < kSureScore) return std::nullopt;
     const ZForm form = likeliest_form(in_codes.curve, texels);
-    return ToneFit{in_codes.curve, as_stored, error_of(in_codes.curve, texels, form), as_stored, true};
+    const double error = error_of(in_codes.curve, texels, form);
+    if (error > as_stored) return std::nullopt;
+    return ToneFit{in_codes.curve, as_stored, error, as_stored, true};
 }
 
 }  // namespace
@@ -180,13 +179,15 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     const std::vector<ToneCurve> usual = usual_tones(centre);
     const CodeComb comb(stored, background);
     const CombFit in_codes = comb.best(usual);
+    if (as_stored < kLeastToneError && !in_codes.is_proof()) return sure_tone(comb, centre, texels, as_stored);
+    const BestTone fits = best_of_forms(middle, true, texels);
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
+        if (agrees(found, texels, fits.best().error, as_stored))
+            return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (const auto sure = sure_tone(comb, centre, texels, as_stored)) return sure;
     if (as_stored < kLeastToneError) return std::nullopt;
-    const BestTone fits = best_of_forms(middle, true, texels);
     const ToneCandidate& best = fits.best();
     if (best.error > as_stored / kToneLead || is_at_limit(best.curve)) return std::nullopt;
     for (const double c : {centre.x, centre.y}) {
@@ -206,12 +207,14 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
                curve.white - curve.black > kMostSpan;
     });
     const CombFit in_codes = CodeComb(stored, background).best(usual);
+    if (as_stored < kLeastContrastError && !in_codes.is_proof()) return std::nullopt;
+    const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels)) return ToneFit{found.curve, as_stored, found.error, as_stored, true};
+        if (agrees(found, texels, best.error, as_stored))
+            return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;
-    const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     const bool is_proven = best.error < kMostContrastError && best.error < as_stored / kContrastLead;
     if (!is_proven || is_at_limit(best.curve) || best.curve.white - best.curve.black > kMostSpan) return std::nullopt;
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
