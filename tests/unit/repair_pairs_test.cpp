@@ -53,9 +53,9 @@ TEST(Repair, UndoesTwoDamages) {
          [](double* t) { keep_upper_half(t), levels(t, 0.1, 1.0); }, 0.2},
         {"N314 take levels from 0.0 % to 90.0 % back, N220 invert B",
          [](double* t) { invert_blue(t), levels(t, 0.0, 0.9); }, 0.2},
-        {"N313 divide by 0.8, N220 invert B", [](double* t) { invert_blue(t), levels(t, 0.0, 1.25); }, 0.4},
-        {"N313 divide by 0.8, N221 store z as (z + 1) / 2", [](double* t) { keep_upper_half(t), levels(t, 0.0, 1.25); },
-         0.4},
+        {"N313 divide by 0.800, N220 invert B", [](double* t) { invert_blue(t), levels(t, 0.0, 1.25); }, 0.4},
+        {"N313 divide by 0.800, N221 store z as (z + 1) / 2",
+         [](double* t) { keep_upper_half(t), levels(t, 0.0, 1.25); }, 0.4},
     };
     const Texture plain = reference::texture_of(clean());
     RepairOptions likely;
