@@ -10,10 +10,10 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr int kMostRows = 512;
-constexpr double kLowest = -12000.0, kHighest = 9000.0;  // metres: no place on the Earth is lower or higher
+constexpr int kMostTileRows = 512;
+constexpr double kLowestGround = -12000.0, kHighestGround = 9000.0;  // metres: no place on the Earth is lower or higher
 constexpr double kLeastPlausible = 0.99;                 // share of texels
-constexpr std::int64_t kLeastTexels = 256;
+constexpr std::int64_t kLeastTriples = 256;
 
 // Two bytes of one number: where the low one runs over, the high one steps. So the number bends less from texel to
 // texel than it does with its low byte turned round; in colours, it makes no difference.
@@ -30,7 +30,7 @@ struct Carry {
     [[nodiscard]] bool shows() const { return bends < 0.6 * turned; }
 };
 
-struct Evidence {
+struct ByteEvidence {
     std::int64_t texels = 0;
     std::int64_t terrain_rgb = 0, terrarium = 0;  // plausible heights
     std::int64_t usual_red = 0;                   // R is 1 or 2: heights from -3446 to 9661 m as terrain-rgb
@@ -38,7 +38,7 @@ struct Evidence {
     double blue_steps = 0.0, green_steps = 0.0;  // from texel to texel
 
     void add(const double* r, const double* g, const double* b) {
-        const auto is_plausible = [](double height) { return height >= kLowest && height <= kHighest; };
+        const auto is_plausible = [](double height) { return height >= kLowestGround && height <= kHighestGround; };
         ++texels;
         terrain_rgb += is_plausible(-10000.0 + 0.1 * (65536.0 * r[1] + 256.0 * g[1] + b[1])) ? 1 : 0;
         terrarium += is_plausible(256.0 * r[1] + g[1] + b[1] / 256.0 - 32768.0) ? 1 : 0;
@@ -66,8 +66,8 @@ std::optional<HeightChannel> byte_heights(const Image& image) {
     const Extent extent = image.extent();
     if (image.planes.size() < kAlpha) return std::nullopt;
     const bool has_alpha = image.planes.size() > kAlpha;
-    Evidence evidence;
-    const int step = std::max(1, extent.height / kMostRows);
+    ByteEvidence evidence;
+    const int step = std::max(1, extent.height / kMostTileRows);
     for (int j = 0; j < extent.height; j += step) {
         const float *const red = image.planes[0].row(j), *const green = image.planes[1].row(j),
                     *const blue = image.planes[2].row(j), *const alpha = has_alpha ? image.planes[3].row(j) : nullptr;
@@ -87,7 +87,7 @@ std::optional<HeightChannel> byte_heights(const Image& image) {
             if (!is_clear) evidence.add(r, g, b);
         }
     }
-    if (evidence.texels < kLeastTexels) return std::nullopt;
+    if (evidence.texels < kLeastTriples) return std::nullopt;
     if (evidence.is_most(evidence.terrarium) && evidence.red_green.shows()) return HeightChannel::terrarium;
     const bool is_low = evidence.is_most(evidence.terrain_rgb) && evidence.is_most(evidence.usual_red);
     if (is_low && (evidence.red_green.shows() || evidence.has_noisy_blue())) return HeightChannel::terrain_rgb;

@@ -227,6 +227,14 @@ bool are_damaged_vectors(const KindMeasure& m) {
     return !related && (restored(Reading::srgb_encoded) || restored(Reading::srgb_decoded) || is_from_zero);
 }
 
+// A strong contrast leaves no vector of unit length, and many outside the circle; z follows x and y all the same.
+bool are_stretched(const KindMeasure& m) {
+    constexpr double kFollowsClosely = 0.8;
+    const KindMeasure::Vectors& v = m.as(Reading::as_stored);
+    return m.z_correlation > kFollowsClosely && v.off_centre() <= thresholds::kCentred &&
+           v.z > thresholds::kUprightMedian && std::abs(m.correlation) <= thresholds::kColorRelated;
+}
+
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
@@ -328,6 +336,7 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
         std::abs(m.as(Reading::as_stored).y) < thresholds::kLostCentred)
         return Kind::x_lost;
+    if (is_surface && are_stretched(m)) return Kind::normals;
     if (!are_two_components(m, is_surface)) return Kind::no_map;
     // Averaged vectors, and those whose lengths are occlusion, are short; but they keep facing outwards.
     const bool is_faulty = m.behind > thresholds::kFewBehind || (m.null > thresholds::kFewNull && m.alpha_varies);
