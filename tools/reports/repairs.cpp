@@ -55,8 +55,11 @@ std::string_view what_repairs(const FaultLeft& fault) {
 std::string repairs_text(const std::string& name, const Repaired& repaired) {
     std::string text;
     for (const RepairStep& step : repaired.steps) {
-        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees\n", printable(name), step.rule->id, step.rule->name,
-                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees);
+        // Occlusion that stays near 1 looks like the z of short vectors.
+        const bool may_lose_blue = step.kind == RepairKind::normalize && repaired.before.more_data;
+        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees{}\n", printable(name), step.rule->id, step.rule->name,
+                            text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees,
+                            may_lose_blue ? "; if blue holds occlusion, as in LabPBR, that wipes it out" : "");
     }
     for (const FaultLeft& fault : repaired.left) {
         const Finding& finding = fault.finding;
