@@ -182,7 +182,12 @@ Result<void> GltfMirrors::change_primitive(JsonValue primitive, JsonNode& node, 
     Result<void> result;
     visit_attributes(primitive, [&](const std::string& key, JsonValue accessor, int target) {
         if (!result || (key != "POSITION" && key != "NORMAL" && key != "TANGENT")) return;
-        const auto [change, is_new] = vectors_.try_emplace({*accessor.count(), key + (target < 0 ? "" : "+")});
+        const auto number = accessor.count();
+        if (!number) {
+            result = bad_gltf("the accessor of " + key + " is damaged");
+            return;
+        }
+        const auto [change, is_new] = vectors_.try_emplace({*number, key + (target < 0 ? "" : "+")});
         if (is_new) {
             change->second.array.buffer = *buffer;
             result = change_vectors(accessor, key, target >= 0, change->second);
