@@ -164,9 +164,11 @@ TEST_F(OnTheGround, WhatIsNotKnownIsSaidAndNothingIsScaled) {
 TEST_F(OnTheGround, MetresInColoursNeedAWidth) {
     scratch_.add_sample("report.png", "tile.png");
     const std::string bake = "bake-normals tile.png -o n.png --channel terrarium";
-    const std::string assumed = "nothing says how wide a texel is: 1 m is assumed; --world-size";
+    const std::string assumed = "nothing says how wide a texel is: 1 m is assumed; --height-range 1 --world-size W";
     EXPECT_NE(shell(scratch_, bake).err.find(assumed), std::string::npos);
-    EXPECT_EQ(shell(scratch_, bake + " --world-size 40000").err.find(assumed), std::string::npos);
+    const Ran told = shell(scratch_, bake + " --height-range 1 --world-size 40000");
+    EXPECT_EQ(told.code, 0) << told.err;
+    EXPECT_EQ(told.err.find(assumed), std::string::npos);
 }
 
 TEST_F(OnTheGround, FractionsOfARangeHaveNoUnit) {

@@ -52,7 +52,8 @@ TEST_F(InputKind, PicturesThatAreNoNormalMapAreNamedAsCheckNormalsNamesThem) {
 
 // Short vectors are no occlusion in blue: the words of pack-normals and check-normals are those of one rule.
 TEST_F(InputKind, UnevenAndDamagedVectorsAreCalledThat) {
-    go("convert n.png -fill 'rgb(128,128,128)' -colorize 20% PNG24:short.png; convert n.png -gamma 2.2 PNG24:light.png");
+    go("convert n.png '(' -size 512x512 'xc:rgb(128,128,128)' ')' '(' -size 512x512 gradient:gray30-black -colorspace "
+       "gray ')' -composite PNG24:short.png; convert n.png -gamma 2.2 PNG24:light.png");
     const std::string uneven = said("pack-normals", "short.png");
     EXPECT_TRUE(has(uneven, "its vectors are not of unit length: ") && has(uneven, "(N201)")) << uneven;
     EXPECT_FALSE(has(uneven, "seems to hold other data")) << uneven;

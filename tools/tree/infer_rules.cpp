@@ -184,14 +184,23 @@ std::vector<InferredRule> infer_rules(const std::vector<SettingsOfFile>& files) 
     Inference inference(files);
     std::vector<InferredRule> rules;
     for (const std::string& settings : order) rules.push_back(inference.rule(settings));
-    // The rest goes to the most frequent settings that are right for it.
+    // The rest goes to the settings that are right for it and are those of most files in its folder; if there are none,
+    // to the most frequent ones.
+    const auto folder_of = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
     for (const std::size_t k : inference.rest()) {
         const auto& also = files[k].also;
-        const auto last = std::find_if(rules.rbegin(), rules.rend(), [&](const InferredRule& candidate) {
-            return std::find(also.begin(), also.end(), candidate.settings) != also.end();
-        });
-        const auto rule = last != rules.rend() ? std::prev(last.base())
-                                               : rules.insert(rules.end(), InferredRule{{}, {}, also.front(), {}});
+        auto rule = rules.end();
+        std::ptrdiff_t most = 0;
+        for (auto candidate = rules.begin(); candidate != rules.end(); ++candidate) {
+            if (std::find(also.begin(), also.end(), candidate->settings) == also.end()) continue;
+            const std::ptrdiff_t beside =
+                std::count_if(candidate->files.begin(), candidate->files.end(),
+                              [&](const std::string& file) { return folder_of(file) == folder_of(files[k].path); });
+            if (rule != rules.end() && beside < most) continue;
+            rule = candidate;
+            most = beside;
+        }
+        if (rule == rules.end()) rule = rules.insert(rules.end(), InferredRule{{}, {}, also.front(), {}});
         rule->match.push_back(pattern_of(files[k].path));
         inference.take(k, *rule);
     }

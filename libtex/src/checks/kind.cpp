@@ -229,7 +229,7 @@ bool are_damaged_vectors(const KindMeasure& m) {
 
 // A strong contrast leaves no vector of unit length, and many outside the circle; z follows x and y all the same.
 bool are_stretched(const KindMeasure& m) {
-    constexpr double kFollowsClosely = 0.8;
+    constexpr double kFollowsClosely = 0.7;
     const KindMeasure::Vectors& v = m.as(Reading::as_stored);
     return m.z_correlation > kFollowsClosely && v.off_centre() <= thresholds::kCentred &&
            v.z > thresholds::kUprightMedian && std::abs(m.correlation) <= thresholds::kColorRelated;

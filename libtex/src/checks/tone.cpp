@@ -25,6 +25,8 @@ constexpr double kToneLead = 1.6;        // of the error as stored over that wit
 constexpr double kMiddleAfter = 0.02;
 constexpr double kContrastLead = 3.0;
 constexpr double kLeastContrastError = 1.5, kMostContrastError = 1.5;
+constexpr double kLeastUncut = 0.05;                // share of texels whose z tells contrasts apart
+constexpr double kFarOffMiddle = 0.04;              // maps of slopes to one side are off by less
 constexpr double kMostSpan = 0.95;                  // white - black
 constexpr double kMostUneven = 0.02;                // of black and white from both ends
 constexpr std::int64_t kLeastToneTexels = 64 * 64;  // in pixel art, chance makes any curve fit
@@ -137,8 +139,13 @@ BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels)
 bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double as_stored) {
     constexpr double kFits = 1.5, kMostMore = 1.75, kMostMoreCodes = 0.5;  // codes
     found.error = error_of(found.curve, texels);
-    for (const ZForm form : {ZForm::inverted, ZForm::from_zero})
-        found.error = std::min(found.error, error_of(found.curve, texels, form));
+    for (const ZForm form : {ZForm::inverted, ZForm::from_zero}) {
+        const double error = error_of(found.curve, texels, form);
+        if (error < found.error) {
+            found.error = error;
+            found.form = form;
+        }
+    }
     return found.error <= (least < kFits ? kMostMore * least + kMostMoreCodes : as_stored);
 }
 
@@ -175,15 +182,20 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (!is_one_curve || middle < 0.15 || middle > 0.85 || stored.extent().texels() < kLeastToneTexels)
         return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
+    if (has_coarse_middle(texels)) return std::nullopt;
     const double as_stored = least_error(texels);
     const std::vector<ToneCurve> usual = usual_tones(centre);
     const CodeComb comb(stored, background);
+    // Where z is cut off nearly everywhere, the middle alone shows the curve.
+    const auto shows = [&](const ToneCurve& curve, ZForm form) {
+        return off > kFarOffMiddle || share_uncut(curve, texels, form) >= kLeastUncut;
+    };
     const CombFit in_codes = comb.best(usual);
     if (as_stored < kLeastToneError && !in_codes.is_proof()) return sure_tone(comb, centre, texels, as_stored);
     const BestTone fits = best_of_forms(middle, true, texels);
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels, fits.best().error, as_stored))
+        if (agrees(found, texels, fits.best().error, as_stored) && shows(found.curve, found.form))
             return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (const auto sure = sure_tone(comb, centre, texels, as_stored)) return sure;
@@ -194,6 +206,7 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
         if (std::abs(undone(best.curve, c) - 0.5) > kMiddleAfter) return std::nullopt;
     }
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
+    if (!shows(chosen.curve, chosen.form)) return std::nullopt;
     return ToneFit{chosen.curve, as_stored, chosen.error, fits.other()};
 }
 
@@ -211,13 +224,15 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
     const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels, best.error, as_stored))
+        if (agrees(found, texels, best.error, as_stored) &&
+            share_uncut(found.curve, texels, found.form) >= kLeastUncut)
             return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;
     const bool is_proven = best.error < kMostContrastError && best.error < as_stored / kContrastLead;
     if (!is_proven || is_at_limit(best.curve) || best.curve.white - best.curve.black > kMostSpan) return std::nullopt;
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
+    if (share_uncut(chosen.curve, texels, chosen.form) < kLeastUncut) return std::nullopt;
     return ToneFit{chosen.curve, as_stored, chosen.error, as_stored};
 }
 

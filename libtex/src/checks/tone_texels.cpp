@@ -69,6 +69,29 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
     return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
 }
 
+double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
+    constexpr double kEdge = 1.0 / 255.0;
+    std::size_t uncut = 0;
+    for (const auto& [x, y, z] : texels) {
+        const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
+        const double expected = redone(curve, stored_z(form, std::sqrt(std::max(0.0, 1.0 - a * a - b * b))));
+        uncut += expected > kEdge && expected < 1.0 - kEdge ? 1 : 0;
+    }
+    return static_cast<double>(uncut) / static_cast<double>(std::max<std::size_t>(1, texels.size()));
+}
+
+bool has_coarse_middle(const ToneTexels& texels) {
+    constexpr double kCoarse = 6.0 / 255.0;
+    for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
+        double below = 0.0, above = 1.0;
+        for (const auto& texel : texels) {
+            (texel[c] < 0.5 ? below : above) = texel[c] < 0.5 ? std::max(below, texel[c]) : std::min(above, texel[c]);
+        }
+        if (above - below >= kCoarse) return true;
+    }
+    return false;
+}
+
 std::vector<ZForm> possible_forms(const ToneTexels& texels) {
     // Steep vectors lie far from the middle of their colours, whatever the curve.
     double n = 0.0, middle_x = 0.0, middle_y = 0.0;

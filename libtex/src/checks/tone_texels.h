@@ -32,6 +32,12 @@ double stored_z(ZForm form, double root);
 // the unit circle, they add how far.
 double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
 
+// The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
+double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
+
+// Whether so few codes are used near the middle that the middle itself is known to six codes at best: a posterised map.
+bool has_coarse_middle(const ToneTexels& texels);
+
 // The forms that may have been stored, the usual one first. No curve changes whether z grows where x and y say so.
 std::vector<ZForm> possible_forms(const ToneTexels& texels);
 
