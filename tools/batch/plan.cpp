@@ -54,7 +54,7 @@ std::string output_name(const Input& input, const FileOptions& files, const Outp
     const std::string pattern = files.name.empty() ? default_pattern(input, files, output, rules) : files.name;
     // The output would have the extension of the input, which has none.
     std::error_code no_status;
-    if (!input.model && fields.ext.empty() && fs::is_directory(input.name, no_status))
+    if (pattern.ends_with("{ext}") && fields.ext.empty() && fs::is_directory(input.name, no_status))
         throw UsageError(printable(input.name), "is a directory; name its files");
     output.fill(fields);
     if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
