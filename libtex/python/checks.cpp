@@ -237,11 +237,10 @@ void add_report(Module& module) {
                   [](const CheckReport& r) { return str_of(std::string(name_of(kPictureKindNames, r.kind))); })
         .property("kind_confidence", "float", "That it is that kind, from 0.5 to 1.",
                   [](const CheckReport& r) { return r.kind_confidence; })
-        .property("height_bytes", "str | None",
-                  "How R, G and B hold heights, if they are the bytes of heights: 'terrain-rgb' or 'terrarium'.",
-                  [](const CheckReport& r) {
-                      return r.height_bytes ? py::object(word_of(*r.height_bytes)) : py::none();
-                  })
+        .property(
+            "height_bytes", "str | None",
+            "How R, G and B hold heights, if they are the bytes of heights: 'terrain-rgb' or 'terrarium'.",
+            [](const CheckReport& r) { return r.height_bytes ? py::object(word_of(*r.height_bytes)) : py::none(); })
         .property("levels", "int", "The number of levels.", [](const CheckReport& r) { return r.levels; })
         .property("more_data", "bool", "A channel varies that holds no component of the normals.",
                   [](const CheckReport& r) { return r.more_data; })

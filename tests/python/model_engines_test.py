@@ -43,6 +43,11 @@ def made_fixture(tmp_path_factory):
     kinds = list(models.kinds())
     for kind in kinds:
         (folder / kind.file).write_bytes(models.model_of(kind, picture.read_bytes()))
+        if kind.name.endswith(", converted"):
+            (folder / "mirrored").mkdir()
+            mirrored = (folder / kind.file).rename(folder / "mirrored" / kind.file)
+            convert = os.path.join(os.environ["TEX_BINARY_DIR"], "convert-normals")
+            subprocess.run([convert, mirrored, "-o", folder / kind.file, "--tangents", "mikktspace"], check=True)
     return folder, kinds
 
 

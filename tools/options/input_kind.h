@@ -23,8 +23,8 @@ struct JudgedPicture {
     bool is_uneven = false;        // vectors of other lengths than 1
     bool has_background = false;   // normals around which a colour that is none is not filled
     std::optional<HeightChannel> height_bytes = {};  // CheckReport::height_bytes
-    bool has_alpha = false;        // data beside the normals, in alpha
-    bool is_vectors = false;       // unit vectors are stored in three channels: it is a normal map by intention
+    bool has_alpha = false;                          // data beside the normals, in alpha
+    bool is_vectors = false;  // unit vectors are stored in three channels: it is a normal map by intention
 };
 
 // Reads the file again, as check-normals does, which takes as long: for pictures that raise a doubt. Nothing if it

@@ -295,7 +295,7 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
     } else if (judged.is_other_blue && names_layout(judged)) {
         job.warn("these are hardly normals: " + judged.words, path);
     } else if (judged.is_damaged) {
-        job.warn("the values of its vectors are not as they were: " + judged.words + "; repair-normals mends that", path);
+        job.warn("its values are not as they were: " + judged.words + "; repair-normals mends that", path);
     } else if (judged.is_uneven && doubts_z) {
         job.warn("its vectors are not of unit length: " + judged.words +
                      "; pack-normals --normalize makes them so, and if blue holds other data, such as occlusion, "

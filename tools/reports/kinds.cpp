@@ -29,7 +29,8 @@ std::string swizzle_word(const Swizzle& swizzle) {
     if (word != to_string(swizzle)) return word;
     std::string channels;
     for (const Component component : {Component::x, Component::y, Component::z}) {
-        const auto at = static_cast<std::size_t>(std::find(swizzle.begin(), swizzle.end(), component) - swizzle.begin());
+        const auto place = std::find(swizzle.begin(), swizzle.end(), component);
+        const auto at = static_cast<std::size_t>(place - swizzle.begin());
         if (at < swizzle.size())
             channels += "rgba"[at];
         else if (component != Component::z)

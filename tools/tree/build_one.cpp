@@ -196,7 +196,7 @@ void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale
     }
 }
 
-// Those of the outputs that stay as they are.
+// Lists the outputs that stay as they are.
 void BuildRun::list_current(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) const {
     Json names = Json::array();
     for (std::size_t k = 0; k < task.outputs.size(); ++k) {

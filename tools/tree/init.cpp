@@ -174,8 +174,7 @@ public:
         std::string text;
         std::vector<std::string> unknown;
         for (std::size_t k = 0; k < files_.size(); ++k) {
-            const bool is_of_rule =
-                std::find(rule.files.begin(), rule.files.end(), files_[k].path) != rule.files.end();
+            const bool is_of_rule = std::find(rule.files.begin(), rule.files.end(), files_[k].path) != rule.files.end();
             if (is_of_rule && holds_normals(k) && !reports_[k].y.y) unknown.push_back(files_[k].path);
         }
         if (!unknown.empty() && unknown.size() == rule.files.size()) {
@@ -264,11 +263,11 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "outputs = [ { format = \"bc5\", y = \"up\", mips = \"all\" } ]\n";
     for (const InferredRule& rule : rules) {
         const bool bakes = rule.settings.starts_with(kBakeStep);
-        text += fmt::format(
-            "\n# {} of {} file{}{}.\n{}[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals", rule.files.size(),
-            rule.files.size() == 1 ? "" : "s",
-            bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
-            tree.caveats(rule), list_of(rule.match));
+        text +=
+            fmt::format("\n# {} of {} file{}{}.\n{}[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
+                        rule.files.size(), rule.files.size() == 1 ? "" : "s",
+                        bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
+                        tree.caveats(rule), list_of(rule.match));
         if (!rule.exclude.empty()) text += fmt::format("exclude = {}\n", list_of(rule.exclude));
         text += fmt::format("steps = [ {} ]\n", rule.settings);
     }

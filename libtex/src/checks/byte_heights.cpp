@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMostTileRows = 512;
 constexpr double kLowestGround = -12000.0, kHighestGround = 9000.0;  // metres: no place on the Earth is lower or higher
-constexpr double kLeastPlausible = 0.99;                 // share of texels
+constexpr double kLeastPlausible = 0.99;                             // share of texels
 constexpr std::int64_t kLeastTriples = 256;
 
 // Two bytes of one number: where the low one runs over, the high one steps. So the number bends less from texel to
@@ -70,7 +70,8 @@ std::optional<HeightChannel> byte_heights(const Image& image) {
     const int step = std::max(1, extent.height / kMostTileRows);
     for (int j = 0; j < extent.height; j += step) {
         const float *const red = image.planes[0].row(j), *const green = image.planes[1].row(j),
-                    *const blue = image.planes[2].row(j), *const alpha = has_alpha ? image.planes[3].row(j) : nullptr;
+                           *const blue = image.planes[2].row(j),
+                           *const alpha = has_alpha ? image.planes[3].row(j) : nullptr;
         for (int i = 1; i + 1 < extent.width; ++i) {
             double r[3], g[3], b[3];
             bool is_clear = false;  // no data

@@ -224,8 +224,7 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
     const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels, best.error, as_stored) &&
-            share_uncut(found.curve, texels, found.form) >= kLeastUncut)
+        if (agrees(found, texels, best.error, as_stored) && share_uncut(found.curve, texels, found.form) >= kLeastUncut)
             return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;

@@ -19,7 +19,7 @@ double redone(const ToneCurve& curve, double c);
 
 using ToneTexels = std::vector<std::array<double, 3>>;  // stored x, y and z
 
-// Those of up to about 2^14 texels. Precondition: x and y are stored, and z or blue.
+// The values of up to about 2^14 texels. Precondition: x and y are stored, and z or blue.
 ToneTexels tone_texels(const Stored& stored, const Background* background);
 
 // How z was stored before levels were changed: as (z + 1) / 2, as (1 - z) / 2, or from 0 to 1.
