@@ -26,7 +26,7 @@ constexpr double kMiddleAfter = 0.02;
 constexpr double kContrastLead = 3.0;
 constexpr double kLeastContrastError = 1.5, kMostContrastError = 1.5;
 constexpr double kLeastUncut = 0.05;                // share of texels whose z tells contrasts apart
-constexpr double kFarOffMiddle = 0.04;              // maps of slopes to one side are off by less
+constexpr double kFarOffMiddle = 0.028;             // maps of slopes to one side are off by less
 constexpr double kMostSpan = 0.95;                  // white - black
 constexpr double kMostUneven = 0.02;                // of black and white from both ends
 constexpr std::int64_t kLeastToneTexels = 64 * 64;  // in pixel art, chance makes any curve fit
