@@ -65,6 +65,26 @@ TEST_F(RepairNormals, MendsSeveralFilesAndLeavesCleanOnesAsTheyAre) {
     EXPECT_NE(ran.out.find("3 maps: 2 repaired, 1 without a fault to repair\n"), std::string::npos) << ran.out;
 }
 
+// Small changes of contrast on real maps, whose histograms show what their makers did.
+TEST_F(RepairNormals, RealMapsDoNotGetWorse) {
+    const std::string folder = TEX_SOURCE_DIR "/../shared/data/wild4/normal/";
+    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no ../shared/data/wild4";
+    const struct {
+        const char *file, *change, *limit;  // degrees that may be left
+    } cases[] = {{"bevy_water_normals.png", "-brightness-contrast 0x5", "0.2"},
+                 {"bevy_water_normals.png", "-brightness-contrast 0x20", "1.5"},
+                 {"castle_Brick_02_Nrm.png", "-level 10%,90%", "1.2"},
+                 {"castle_grassfull_normalmap.png", "-posterize 16", "3"}};
+    for (const auto& [file, change, limit] : cases) {
+        const Ran ran =
+            shell(scratch_, "convert " + folder + file + " -alpha off PNG24:o.png && convert o.png " + change +
+                                " PNG24:d.png && repair-normals d.png -o r.png --likely --no-sync && "
+                                "compare-normals o.png r.png --max-mean " +
+                                limit);
+        EXPECT_EQ(ran.code, 0) << file << " " << change << "\n" << ran.out << ran.err;
+    }
+}
+
 // Parts of both directions are told apart by a straight line alone, which is looked for with --likely.
 TEST_F(RepairNormals, PromisesNoMoreThanItMayDo) {
     scratch_.add_sample("broken/N402-mixed-y.png", "mixed.png");

@@ -105,7 +105,11 @@ Result<void> decide_kind(CheckContext& context) {
         for (Component& held : flat.swizzle) held = held == Component::z ? Component::other : held;
         const auto curl = measure_curl(flat, context.execution);
         if (!curl) return curl.error();
-        return clear_y(*curl) ? of_surface : kind;
+        if (clear_y(*curl)) return of_surface;
+        // Where contrast moved x and y out of the unit circle, no z can be rebuilt.
+        const auto with_z = measure_curl(stored, context.execution);
+        if (!with_z) return with_z.error();
+        return clear_y(*with_z) ? of_surface : kind;
     };
     // A colour that covers nearly all of a picture is the picture.
     constexpr double kMostMasked = 0.9;
