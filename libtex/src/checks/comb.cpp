@@ -161,6 +161,13 @@ double CodeComb::correlation(const Counts& shares) const {
     return root > 0.0 ? product / root : 0.0;
 }
 
+double CodeComb::share_empty() const {
+    std::ptrdiff_t empty = 0;
+    for (const Channel& channel : channels_)
+        empty += std::count(channel.is_empty.begin(), channel.is_empty.end(), true);
+    return codes_ > 0 ? static_cast<double>(empty) / codes_ : 0.0;
+}
+
 CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {
     CombFit best;
     if (codes_ == 0) return best;

@@ -38,6 +38,9 @@ public:
     CodeComb(const Stored& stored, const Background* background);
 
     [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
+    // The share of codes that no texel has although many have those about them: more than a few in a hundred are left
+    // by a contrast above 1, whichever it was.
+    [[nodiscard]] double share_empty() const;
     // The best of these.
     [[nodiscard]] CombFit best(const std::vector<ToneCurve>& curves) const;
 

@@ -26,6 +26,7 @@ constexpr double kMiddleAfter = 0.02;
 constexpr double kContrastLead = 3.0;
 constexpr double kLeastContrastError = 1.5, kMostContrastError = 1.5;
 constexpr double kLeastUncut = 0.05;                // share of texels whose z tells contrasts apart
+constexpr double kSureScore = 0.8;                  // of the histogram of 8 bits, wherever z is
 constexpr double kFarOffMiddle = 0.028;             // maps of slopes to one side are off by less
 constexpr double kMostSpan = 0.95;                  // white - black
 constexpr double kMostUneven = 0.02;                // of black and white from both ends
@@ -163,7 +164,7 @@ namespace {
 // vectors, or that lean.
 std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, const ToneTexels& texels,
                                  double as_stored) {
-    constexpr double kFarOff = 0.06, kSureScore = 0.8;
+    constexpr double kFarOff = 0.06;
     std::vector<ToneCurve> round = usual_tones(centre, kFarOff);
     std::erase_if(round, [](const ToneCurve& curve) { return roundness(curve) > 1; });
     const CombFit in_codes = comb.best(round);
@@ -224,7 +225,10 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
     const ToneCandidate best = best_of_forms(0.5, false, texels).levels;
     if (in_codes.is_proof()) {
         ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels, best.error, as_stored) && share_uncut(found.curve, texels, found.form) >= kLeastUncut)
+        // Where z is cut off nearly everywhere, it contradicts no contrast.
+        const bool is_sure =
+            in_codes.score >= kSureScore || share_uncut(found.curve, texels, found.form) >= kLeastUncut;
+        if (is_sure && agrees(found, texels, best.error, as_stored))
             return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;

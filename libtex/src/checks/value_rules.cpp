@@ -10,6 +10,7 @@
 
 #include "checks/background_fill.h"
 #include "checks/centre.h"
+#include "checks/comb.h"
 #include "checks/context.h"
 #include "checks/tone.h"
 #include "rows/math.h"
@@ -29,6 +30,8 @@ constexpr double kNullShareBesideGrey = 0.002;  // if there is a background: wha
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
+constexpr double kMostEmpty = 0.1;   // of the codes of x and y: a contrast that cuts z off everywhere leaves more
+constexpr double kUnsure = 0.9;      // a confidence
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
 
@@ -154,6 +157,11 @@ void check_channels(const CheckContext& context, Findings& findings) {
         const float blue = counts.low[static_cast<std::size_t>(cz)];
         Finding& finding = findings.add("N209", "blue is " + decimal(static_cast<double>(blue), 3) + " everywhere");
         if (blue == 1.0f) find_levels_of(context, true, finding);  // which may have cut all of z off
+        const Background* const background = context.background ? &*context.background : nullptr;
+        if (blue == 1.0f && !finding.tone && CodeComb(stored, background).share_empty() > kMostEmpty) {
+            finding.confidence = kUnsure;
+            finding.message += ", and the histograms of x and y have gaps: a contrast may have cut z off";
+        }
     }
     if (counts[Property::red_not_one].count > 0) {
         add_counted(context, findings, "N211", Property::red_not_one, " have R below 255");

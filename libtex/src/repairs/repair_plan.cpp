@@ -182,6 +182,7 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
         case rebuild_z:
             if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
             if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}, step};
+            if (finding.confidence < kSurely) step.certainty = likely;
             break;
         case undo_tone:
             if (!finding.tone || z < 0) return {};
