@@ -269,7 +269,7 @@ int few_colors(const Stored& stored) {
 }
 
 int few_levels(const Stored& stored) {
-    constexpr int kLeastDistance = 4, kLeastLevels = 6;
+    constexpr int kLeastDistance = 4, kFewestLevels = 6;
     int most = 0;
     for (const Component component : {Component::x, Component::y}) {
         const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
@@ -294,7 +294,7 @@ int few_levels(const Stored& stored) {
             levels = count_levels();
             if (levels == 0) return 0;
         }
-        if (levels < kLeastLevels) return 0;
+        if (levels < kFewestLevels) return 0;
         most = std::max(most, levels);
     }
     return most;
