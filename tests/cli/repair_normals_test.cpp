@@ -85,7 +85,7 @@ TEST_F(RepairNormals, RealMapsDoNotGetWorse) {
     }
 }
 
-// Parts of both directions are told apart by a straight line alone, which is looked for with --likely.
+// With --likely, parts of both directions are repaired only if a straight line divides them.
 TEST_F(RepairNormals, PromisesNoMoreThanItMayDo) {
     scratch_.add_sample("broken/N402-mixed-y.png", "mixed.png");
     const Ran ran = go({"mixed.png", "-o", "out.png"});

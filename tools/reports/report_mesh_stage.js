@@ -135,7 +135,7 @@ class BesideStage extends MeshStage {
   tell() { this.caption.textContent = this.stillCaption; }
 }
 
-// A mesh with a map of its own in a row, one of whose meshes leads the others.
+// One mesh of a row, each with a map of its own. The others turn as the leading one does.
 class RowStage extends BesideStage {
   get leading() { return this.root.parentElement.querySelector("[data-leads]"); }
   get what() { return "on its mesh"; }

@@ -203,6 +203,7 @@ void BuildRun::list_current(const BuildTask& task, const std::vector<Stale>& sta
         if (std::any_of(stale.begin(), stale.end(), [k](const Stale& one) { return one.index == k; })) continue;
         for (const std::string& path : paths_of(task, k).all()) names.push_back(name_of_path(path));
     }
+    outcome.report.erase("up_to_date");  // of an attempt before
     if (!names.empty()) outcome.report["up_to_date"] = std::move(names);
 }
 
@@ -341,7 +342,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
         const auto stamps = stamps_of(task);
         Result<Judgement> judged = judge_.judge(task, recipe);
         if (!judged) return judged.error();
-        list_current(task, judged->stale, outcome);
+        if (running_.json) list_current(task, judged->stale, outcome);
         if (judged->stale.empty()) {
             ++totals_.current;
             outcome.report["status"] = "current";

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "cli/glob.h"
 #include "cli/text.h"
@@ -187,15 +188,18 @@ std::vector<InferredRule> infer_rules(const std::vector<SettingsOfFile>& files) 
     // The rest goes to the settings that are right for it and are those of most files in its folder; if there are none,
     // to the most frequent ones.
     const auto folder_of = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
+    std::map<std::pair<std::string, std::string>, std::size_t> number;  // of files, by settings and folder
+    for (const InferredRule& rule : rules) {
+        for (const std::string& file : rule.files) ++number[{rule.settings, folder_of(file)}];
+    }
     for (const std::size_t k : inference.rest()) {
         const auto& also = files[k].also;
         auto rule = rules.end();
-        std::ptrdiff_t most = 0;
+        std::size_t most = 0;
         for (auto candidate = rules.begin(); candidate != rules.end(); ++candidate) {
             if (std::find(also.begin(), also.end(), candidate->settings) == also.end()) continue;
-            const std::ptrdiff_t beside =
-                std::count_if(candidate->files.begin(), candidate->files.end(),
-                              [&](const std::string& file) { return folder_of(file) == folder_of(files[k].path); });
+            const auto its = number.find({candidate->settings, folder_of(files[k].path)});
+            const std::size_t beside = its != number.end() ? its->second : 0;
             if (rule != rules.end() && beside < most) continue;
             rule = candidate;
             most = beside;

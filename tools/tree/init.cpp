@@ -173,9 +173,10 @@ public:
     [[nodiscard]] std::string caveats(const InferredRule& rule) const {
         std::string text;
         std::vector<std::string> unknown;
+        const std::set<std::string> of_rule(rule.files.begin(), rule.files.end());
         for (std::size_t k = 0; k < files_.size(); ++k) {
-            const bool is_of_rule = std::find(rule.files.begin(), rule.files.end(), files_[k].path) != rule.files.end();
-            if (is_of_rule && holds_normals(k) && !reports_[k].y.y) unknown.push_back(files_[k].path);
+            if (of_rule.contains(files_[k].path) && holds_normals(k) && !reports_[k].y.y)
+                unknown.push_back(files_[k].path);
         }
         if (!unknown.empty() && unknown.size() == rule.files.size()) {
             text += "# A guess: the texels do not show where green points.\n";

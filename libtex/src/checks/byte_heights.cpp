@@ -7,12 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "rows/height_bytes.h"
+
 namespace tex::inline v1 {
 namespace {
 
 constexpr int kMostTileRows = 512;
-constexpr double kLowestGround = -12000.0, kHighestGround = 9000.0;  // metres: no place on the Earth is lower or higher
-constexpr double kLeastPlausible = 0.99;                             // share of texels
+constexpr double kLeastPlausible = 0.99;  // share of texels
 constexpr std::int64_t kLeastTriples = 256;
 
 // Two bytes of one number: where the low one runs over, the high one steps. So the number bends less from texel to
@@ -25,8 +26,8 @@ struct Carry {
         bends += bend(256.0 * high[0] + low[0], 256.0 * high[1] + low[1], 256.0 * high[2] + low[2]);
         turned += bend(256.0 * high[0] - low[0], 256.0 * high[1] - low[1], 256.0 * high[2] - low[2]);
     }
-    // Real tiles have 0.10 to 0.27 where the ground does not rise by more than the low byte holds; no colour picture
-    // of some 1,000 is below 0.85.
+    // Real tiles have 0.10 to 0.27 where the ground does not rise by more than the low byte holds, and pictures
+    // about 1.
     [[nodiscard]] bool shows() const { return bends < 0.6 * turned; }
 };
 
@@ -38,10 +39,12 @@ struct ByteEvidence {
     double blue_steps = 0.0, green_steps = 0.0;  // from texel to texel
 
     void add(const double* r, const double* g, const double* b) {
-        const auto is_plausible = [](double height) { return height >= kLowestGround && height <= kHighestGround; };
+        const auto is_plausible = [&](HeightChannel channel) {
+            return is_on_earth(height_of_bytes(r[1], g[1], b[1], channel));
+        };
         ++texels;
-        terrain_rgb += is_plausible(-10000.0 + 0.1 * (65536.0 * r[1] + 256.0 * g[1] + b[1])) ? 1 : 0;
-        terrarium += is_plausible(256.0 * r[1] + g[1] + b[1] / 256.0 - 32768.0) ? 1 : 0;
+        terrain_rgb += is_plausible(HeightChannel::terrain_rgb) ? 1 : 0;
+        terrarium += is_plausible(HeightChannel::terrarium) ? 1 : 0;
         usual_red += r[1] == 1.0 || r[1] == 2.0 ? 1 : 0;
         red_green.add(r, g);
         green_steps += std::abs(g[1] - g[0]);

@@ -70,10 +70,11 @@ bool is_multiple(double value, double of) { return std::abs(value / of - std::fl
 
 }  // namespace
 
-bool CombFit::is_proof() const {
-    return gaps >= kLeastGaps ||
-           (score >= kLeastCombScore && score * std::sqrt(static_cast<double>(codes)) >= kLeastCombProof);
+bool CombFit::is_correlated() const {
+    return score >= kLeastCombScore && score * std::sqrt(static_cast<double>(codes)) >= kLeastCombProof;
 }
+
+bool CombFit::is_proof() const { return gaps >= kLeastGaps || is_correlated(); }
 
 CodeComb::CodeComb(const Stored& stored, const Background* background) {
     const Extent extent = stored.extent();
@@ -187,9 +188,7 @@ CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {
         most = score;
         best = one;
     }
-    const bool is_by_score =
-        best.score >= kLeastCombScore && best.score * std::sqrt(static_cast<double>(codes_)) >= kLeastCombProof;
-    return by_gaps.codes > 0 && !is_by_score ? by_gaps : best;
+    return by_gaps.codes > 0 && !best.is_correlated() ? by_gaps : best;
 }
 
 std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {

@@ -26,6 +26,7 @@ struct CombFit {
     double gaps = 0.0;
 
     // Chance reaches 0.42 in maps of few codes, and the correlation times the root of their number 5.1.
+    [[nodiscard]] bool is_correlated() const;  // beyond chance
     [[nodiscard]] bool is_proof() const;
 };
 

@@ -106,7 +106,7 @@ Result<void> decide_kind(CheckContext& context) {
         const auto curl = measure_curl(flat, context.execution);
         if (!curl) return curl.error();
         if (clear_y(*curl)) return of_surface;
-        // Where contrast moved x and y out of the unit circle, no z can be rebuilt.
+        if (!are_stretched(context.kind_measure)) return kind;  // else no z can be rebuilt
         const auto with_z = measure_curl(stored, context.execution);
         if (!with_z) return with_z.error();
         return clear_y(*with_z) ? of_surface : kind;

@@ -227,14 +227,6 @@ bool are_damaged_vectors(const KindMeasure& m) {
     return !related && (restored(Reading::srgb_encoded) || restored(Reading::srgb_decoded) || is_from_zero);
 }
 
-// A strong contrast leaves no vector of unit length, and many outside the circle; z follows x and y all the same.
-bool are_stretched(const KindMeasure& m) {
-    constexpr double kFollowsClosely = 0.7;
-    const KindMeasure::Vectors& v = m.as(Reading::as_stored);
-    return m.z_correlation > kFollowsClosely && v.off_centre() <= thresholds::kCentred &&
-           v.z > thresholds::kUprightMedian && std::abs(m.correlation) <= thresholds::kColorRelated;
-}
-
 bool are_two_components(const KindMeasure& m, bool is_surface) {
     const double off = m.as(Reading::as_stored).off_centre();
     if (m.beyond > thresholds::kMostOutside || m.grey > thresholds::kMostGrey) return false;
@@ -304,6 +296,13 @@ KindMeasure measure_kind(const Stored& stored, const Background* without) {
     KindMeasure measure = measure_readings(stored, without, false);
     if (!stored.has_z() || (measure.as(Reading::as_stored).unit >= kSurelyUnit && are_vectors(measure))) return measure;
     return measure_readings(stored, without, true);
+}
+
+bool are_stretched(const KindMeasure& m) {
+    constexpr double kFollowsClosely = 0.7;
+    const KindMeasure::Vectors& v = m.as(Reading::as_stored);
+    return m.z_correlation > kFollowsClosely && v.off_centre() <= thresholds::kCentred &&
+           v.z > thresholds::kUprightMedian && std::abs(m.correlation) <= thresholds::kColorRelated;
 }
 
 Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {

@@ -62,6 +62,9 @@ enum class Kind {
 // Leaves out the texels that `without` holds, which may be null. Precondition: x and y are stored, unsigned.
 KindMeasure measure_kind(const Stored& stored, const Background* without);
 
+// Whether contrast may have moved x and y out of the unit circle: z follows them all the same.
+bool are_stretched(const KindMeasure& measure);
+
 // What the measures show. `is_surface` says whether the slopes of x and y are those of a surface, which no colours are;
 // it is asked only if the measures leave a choice.
 Kind kind_of(const KindMeasure& measure, const Stored& stored, bool is_surface);

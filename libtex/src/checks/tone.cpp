@@ -156,12 +156,8 @@ double least_error(const ToneTexels& texels) {
     return least;
 }
 
-}  // namespace
-
-namespace {
-
-// What the codes show beyond doubt, wherever the middle is, and whatever z says: of maps whose vectors were no unit
-// vectors, or that lean.
+// What the codes show beyond doubt, wherever the middle is, if it does not make z worse: of maps whose vectors were no
+// unit vectors, or that lean.
 std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, const ToneTexels& texels,
                                  double as_stored) {
     constexpr double kFarOff = 0.06;

@@ -20,12 +20,6 @@ double code_of_value(float value, bool has_numbers) {
 
 bool has_two_bytes(HeightChannel channel) { return channel == HeightChannel::rg16 || channel == HeightChannel::gr16; }
 
-double height_of(double r, double g, double b, HeightChannel channel, bool has_numbers) {
-    if (channel == HeightChannel::terrain_rgb) return -10000.0 + 0.1 * (65536.0 * r + 256.0 * g + b);
-    if (channel == HeightChannel::terrarium) return 256.0 * r + g + b / 256.0 - 32768.0;
-    return (channel == HeightChannel::gr16 ? 256.0 * g + r : 256.0 * r + g) / (has_numbers ? 1.0 : 65535.0);
-}
-
 // The distance between two codes of a byte; values that are no codes count as 0.
 std::int64_t step_between(double a, double b) {
     const double distance = std::abs(a - b);
@@ -33,6 +27,14 @@ std::int64_t step_between(double a, double b) {
 }
 
 }  // namespace
+
+double height_of_bytes(double r, double g, double b, HeightChannel channel, bool has_numbers) {
+    if (channel == HeightChannel::terrain_rgb) return -10000.0 + 0.1 * (65536.0 * r + 256.0 * g + b);
+    if (channel == HeightChannel::terrarium) return 256.0 * r + g + b / 256.0 - 32768.0;
+    return (channel == HeightChannel::gr16 ? 256.0 * g + r : 256.0 * r + g) / (has_numbers ? 1.0 : 65535.0);
+}
+
+bool is_on_earth(double height) { return height >= kLowest && height <= kHighest; }
 
 HeightCounts height_bytes_row(const ColorRow& in, const float* alpha, HeightChannel channel, bool has_numbers,
                               int count, float* out) {
@@ -46,8 +48,8 @@ HeightCounts height_bytes_row(const ColorRow& in, const float* alpha, HeightChan
         const double r = code_of_value(in.r[i], has_numbers);
         const double g = code_of_value(in.g[i], has_numbers);
         const double b = code_of_value(in.b[i], has_numbers);
-        const double height = height_of(r, g, b, channel, has_numbers);
-        const bool odd = has_two_bytes(channel) ? r == g : height < kLowest || height > kHighest;
+        const double height = height_of_bytes(r, g, b, channel, has_numbers);
+        const bool odd = has_two_bytes(channel) ? r == g : !is_on_earth(height);
         counts.implausible += odd ? 1 : 0;
         out[i] = static_cast<float>(height);
         if (i > 0) {

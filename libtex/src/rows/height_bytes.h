@@ -12,6 +12,13 @@
 
 namespace tex::inline v1 {
 
+// The height of the codes r, g and b, from 0 to 255; with `has_numbers`, rg16 and gr16 are not divided. Precondition:
+// `channel` is terrain_rgb, terrarium, rg16 or gr16.
+double height_of_bytes(double r, double g, double b, HeightChannel channel, bool has_numbers = true);
+
+// Whether a place on the Earth may have this height in metres.
+bool is_on_earth(double height);
+
 // Writes `count` heights. `has_numbers`: the values are 0 to 255, not 0 to 1. Texels whose alpha is 0 become NaN;
 // `alpha` may be null. Returns what is implausible (HeightReport), and the steps. Precondition: `channel` is
 // terrain_rgb, terrarium, rg16 or gr16.
