@@ -12,7 +12,7 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr int kMostTileRows = 512;
+constexpr int kMostTileRows = 128;
 constexpr double kLeastPlausible = 0.99;  // share of texels
 constexpr std::int64_t kLeastTriples = 256;
 
@@ -57,8 +57,14 @@ struct ByteEvidence {
         constexpr double kNoise = 40.0, kLead = 2.0;
         return blue_steps > kNoise * static_cast<double>(texels) && blue_steps > kLead * green_steps;
     }
-    [[nodiscard]] bool is_most(std::int64_t count) const {
-        return static_cast<double>(count) >= kLeastPlausible * static_cast<double>(texels);
+    [[nodiscard]] bool is_most(std::int64_t count, double share = kLeastPlausible) const {
+        return static_cast<double>(count) >= share * static_cast<double>(texels);
+    }
+    // Pictures show in their first rows that they are no tiles.
+    [[nodiscard]] bool is_hopeless() const {
+        constexpr double kFew = 0.9;
+        return texels >= kLeastTriples && !is_most(terrarium, kFew) &&
+               !(is_most(terrain_rgb, kFew) && is_most(usual_red, kFew));
     }
 };
 
@@ -90,6 +96,7 @@ std::optional<HeightChannel> byte_heights(const Image& image) {
             }
             if (!is_clear) evidence.add(r, g, b);
         }
+        if (evidence.is_hopeless()) return std::nullopt;
     }
     if (evidence.texels < kLeastTriples) return std::nullopt;
     if (evidence.is_most(evidence.terrarium) && evidence.red_green.shows()) return HeightChannel::terrarium;

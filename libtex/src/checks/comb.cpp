@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "checks/tone_texels.h"
@@ -85,20 +86,23 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
     int number = 0;
     for (const Component component : {Component::x, Component::y}) {
         const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
-        CombCounts counts{};
+        std::array<std::int64_t, kCodes> texels{};
         for (int j = 0; j < extent.height; ++j) {
-            const float* const row = plane.row(j);
+            const float *const row = plane.row(j), *const alphas = alpha != nullptr ? alpha->row(j) : nullptr;
             for (int i = 0; i < extent.width; ++i) {
                 if (background != nullptr && background->holds(i, j)) continue;
-                if (alpha != nullptr && alpha->at(i, j) < 1.0f) continue;
-                const float code = 255.0f * row[i], whole = std::floor(code + 0.5f);
-                if (!(code >= 0.0f && code <= 255.0f) || std::abs(code - whole) > 1e-3f) {
+                if (alphas != nullptr && alphas[i] < 1.0f) continue;
+                const float code = 255.0f * row[i];
+                const int whole = code >= 0.0f && code <= 255.0f ? static_cast<int>(code + 0.5f) : -1;
+                if (whole < 0 || std::abs(code - static_cast<float>(whole)) > 1e-3f) {
                     codes_ = 0;
                     return;
                 }
-                counts[static_cast<std::size_t>(whole)] += 1.0;
+                ++texels[static_cast<std::size_t>(whole)];
             }
         }
+        CombCounts counts{};
+        std::copy(texels.begin(), texels.end(), counts.begin());
         const CombCounts means = means_about(counts);
         Channel& channel = channels_[static_cast<std::size_t>(number++)];
         for (std::size_t k = kCombEnds; k + kCombEnds < counts.size(); ++k) {

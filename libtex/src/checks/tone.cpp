@@ -238,12 +238,13 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
 std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& centre, const Background* background) {
     constexpr double kFarOff = 0.12, kClearScore = 0.45, kBetter = 0.8;
     if (stored.extent().texels() < kLeastToneTexels) return std::nullopt;
+    const ToneTexels texels = tone_texels(stored, background);
+    const double as_stored = least_error(texels);
+    if (as_stored < kLeastToneError) return std::nullopt;
     std::vector<ToneCurve> round = usual_tones(centre, kFarOff);
     std::erase_if(round, [](const ToneCurve& curve) { return roundness(curve) > 1; });
     const CombFit in_codes = CodeComb(stored, background).best(round);
     if (!in_codes.is_proof() || in_codes.score < kClearScore) return std::nullopt;
-    const ToneTexels texels = tone_texels(stored, background);
-    const double as_stored = least_error(texels);
     const ZForm form = likeliest_form(in_codes.curve, texels);
     const double error = error_of(in_codes.curve, texels, form);
     if (error > kBetter * as_stored) return std::nullopt;
