@@ -149,10 +149,22 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
 }
 
 Result<void> BakeNormals::process(cli::Job& job) {
-    const BakeFileOptions with = options(job);
+    BakeFileOptions with = options(job);
+    cli::JudgedColours judged;
+    with.accept = [&](const HeightReport& heights) -> Result<void> {
+        judged = reader_.judge(job, heights);
+        return judged.channel ? Error{ErrorCode::bad_data, job.task.input, judged.words} : Result<void>();
+    };
     auto baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    if (!baked && judged.channel) {
+        with.heights.channel = *judged.channel;
+        with.accept = {};
+        job.say(fmt::format("{}: --channel {}: R, G and B are the bytes of heights, as in map tiles\n",
+                            cli::printable(job.task.input), name_of(kHeightChannelNames, *judged.channel)));
+        baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
+    }
     if (!baked) return with_remedy(baked.error());
-    reader_.note(job, baked->heights);
+    reader_.note(job, baked->heights, judged);
     cli::wrote_levels(job, job.task.output, baked->levels);
     cli::report_texture(job, baked->extent, baked->levels, with.pack, baked->bytes, baked->rdo);
     note_output(job, {baked->extent, baked->levels, baked->left_out > 0, with.pack.encoding});
@@ -164,7 +176,8 @@ Result<void> BakeNormals::process(cli::Job& job) {
     warn_of_flat(job, *baked);
     const HeightChannel channel = with.heights.channel;
     const bool is_metres = channel == HeightChannel::terrain_rgb || channel == HeightChannel::terrarium;
-    if (is_metres && !baked->is_stated && !reader_.strength.is_given && !reader_.strength.measured) {
+    if (is_metres && !baked->is_stated && !baked->on_ground && !reader_.strength.is_given &&
+        !reader_.strength.measured) {
         job.warn(
             "heights are metres, and nothing says how wide a texel is: 1 m is assumed; --height-range 1 --world-size W "
             "gives true slopes, where W is the width of the map in metres");

@@ -11,15 +11,18 @@
 #include <tex/tex.h>
 
 #include "cli/programs.h"
+#include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "options/curve.h"
+#include "options/folder_pairs.h"
 #include "options/map_pairs.h"
 #include "options/pair.h"
 #include "options/run.h"
 #include "options/tangent_space.h"
 #include "reports/comparison.h"
 #include "reports/curve.h"
+#include "tasks/folders.h"
 
 namespace {
 
@@ -32,7 +35,11 @@ public:
 
 private:
     [[nodiscard]] std::vector<std::string> sources() const;
-    [[nodiscard]] Result<cli::ExitCode> compare_files(cli::Console& console);
+    [[nodiscard]] cli::ExitCode report_failure(cli::Console& console, const Error& error);
+    [[nodiscard]] Result<cli::ExitCode> compare_inputs(cli::Console& console);
+    [[nodiscard]] Result<cli::ExitCode> compare_folders(cli::Console& console);
+    [[nodiscard]] Result<cli::ExitCode> compare_files(cli::Console& console, const std::vector<std::string>& names,
+                                                      const cli::MeshSpace* mesh);
     [[nodiscard]] Result<cli::ExitCode> compare_pair(cli::Console& console, const cli::MapPair& pair,
                                                      const cli::MeshSpace* mesh);
     [[nodiscard]] Result<cli::ExitCode> draw_curve(cli::Console& console);
@@ -45,13 +52,15 @@ private:
     cli::CurveOptions curve_;
     cli::RunOptions running_;
     std::vector<std::string> sources_;  // everything that is read
-    cli::ComparisonRun run_{command.inputs(), pair_.warnings()};
+    bool has_folders_ = false;
+    cli::ComparisonRun run_{{}, pair_.warnings()};
 };
 
 CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.usage("A B");
     command.usage("A --rdo-means LIST");
-    command.input("A B", "two textures, pictures or glTF models with their maps; - is standard input");
+    command.input("A B",
+                  "two textures, pictures, glTF models with their maps, or folders of them; - is standard input");
     command.finds_things();
     pair_.add(command);
     mesh_.add_charts(command);
@@ -76,6 +85,7 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
     command.example("compare-normals mine.png theirs.png --mesh rock.glb",
                     "Two bakes, without what is between the charts.");
     command.example("compare-normals rock.glb small.glb", "The maps of two models, by their materials.");
+    command.example("compare-normals old new --max-mean 0.1", "All normal maps of two folders, by their names.");
     command.example("compare-normals gl.png dx.png --y-b down", "Two conventions of one map.");
     command.example("compare-normals bricks.png bricks.ktx2 --as etc1", "What old phones show of UASTC.");
     command.example("compare-normals bricks.exr --rdo-means 0,0.1,0.3,1 --plot curve.svg",
@@ -84,18 +94,22 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
 
 cli::ExitCode CompareNormals::work(cli::Console& console) {
     if (running_.quiet) console.be_quiet();
+    run_.inputs = command.inputs();
     cli::Host& host = console.host();
     host.begin();
-    auto code = curve_.is_asked() ? draw_curve(console) : compare_files(console);
+    auto code = curve_.is_asked() ? draw_curve(console) : compare_inputs(console);
     if (code) {
         if (auto written = documents_.write_depfile(sources_); !written) code = written.error();
     }
     console.clear_progress();
     if (!host.interruption().empty()) host.end_interrupted();
-    if (code) return *code;
-    console.error(code.error().message());
-    const cli::ExitCode failed = cli::exit_code(code.error().code);
-    return running_.json ? std::max(failed, cli::print_failure(console, run_, code.error())) : failed;
+    return code ? *code : report_failure(console, code.error());
+}
+
+cli::ExitCode CompareNormals::report_failure(cli::Console& console, const Error& error) {
+    console.error(error.message());
+    const cli::ExitCode failed = cli::exit_code(error.code);
+    return running_.json ? std::max(failed, cli::print_failure(console, run_, error)) : failed;
 }
 
 std::vector<std::string> CompareNormals::sources() const {
@@ -111,16 +125,60 @@ std::vector<std::string> CompareNormals::sources() const {
     return names;
 }
 
-Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
+Result<cli::ExitCode> CompareNormals::compare_inputs(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
-    if (mesh_.has_mesh()) {
-        for (const std::string& name : names) {
-            if (is_model(name))
-                return Error{ErrorCode::bad_option, name, "a model, and --mesh is for maps without their mesh"};
-        }
+    const bool is_folder[] = {cli::is_folder(names[0]), cli::is_folder(names[1])};
+    if (is_folder[0] != is_folder[1])
+        return Error{ErrorCode::bad_option, names[is_folder[0] ? 1 : 0],
+                     fmt::format("{} is a folder, and is compared with another folder", names[is_folder[0] ? 0 : 1])};
+    if (is_folder[0]) return compare_folders(console);
+    if (!mesh_.has_mesh()) return compare_files(console, names, nullptr);
+    for (const std::string& name : names) {
+        if (is_model(name))
+            return Error{ErrorCode::bad_option, name, "a model, and --mesh is for maps without their mesh"};
     }
+    const auto mesh = mesh_.charts(running_.read, {running_.threads, {}});
+    if (!mesh) return mesh.error();
+    for (const std::string& remark : mesh->selected().remarks) pair_.warn(console, mesh->file(), remark);
+    return compare_files(console, names, &*mesh);
+}
+
+// What fails for one pair does not keep the others from being compared.
+Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
+    const std::vector<std::string>& names = command.inputs();
+    if (documents_.has_any() || mesh_.has_mesh())
+        return Error{ErrorCode::bad_option, names[0], "a folder, and --heatmap, --report and --mesh are for two files"};
+    const auto pairs = cli::folder_pairs(names[0], names[1], running_.read);
+    if (!pairs) return pairs.error();
+    for (int k = 0; k < 2; ++k) {
+        if (pairs->alone[k].empty()) continue;
+        pair_.warn(console, names[k],
+                   fmt::format("not compared, because {} has no file of that name: {}", names[1 - k],
+                               cli::join(pairs->alone[k])));
+    }
+    if (pairs->others > 0)
+        pair_.warn(console, names[0],
+                   fmt::format("files left out, because they are no normal maps: {}", pairs->others));
+    if (pairs->files.empty())
+        return Error{ErrorCode::bad_option, names[1], fmt::format("shares no normal map with {}", names[0])};
+    has_folders_ = true;
+    auto code = cli::ExitCode::done;
+    for (const auto& [a, b] : pairs->files) {
+        run_.inputs = {a, b};
+        run_.material.clear();
+        if (!running_.json)
+            code = std::max(code, console.print(fmt::format("{}, {}:\n", cli::printable(a), cli::printable(b))));
+        const auto compared = compare_files(console, run_.inputs, nullptr);
+        code = std::max(code, compared ? *compared : report_failure(console, compared.error()));
+        pair_.forget_warnings();
+    }
+    return code;
+}
+
+Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console, const std::vector<std::string>& names,
+                                                    const cli::MeshSpace* mesh) {
     const auto pairs = cli::map_pairs(
-        names, mesh_.has_mesh() ? "" : mesh_.material(), running_.read,
+        names, mesh != nullptr ? "" : mesh_.material(), running_.read,
         [&](const std::string& file, const std::string& sentence) { pair_.warn(console, file, sentence); });
     if (!pairs) return pairs.error();
     if (pairs->size() > 1 && documents_.has_any()) {
@@ -128,17 +186,10 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console) {
                      fmt::format("{} maps are compared, and --heatmap and --report show two: give --material",
                                  2 * pairs->size())};
     }
-    std::optional<cli::MeshSpace> mesh;
-    if (mesh_.has_mesh()) {
-        auto read = mesh_.charts(running_.read, {running_.threads, {}});
-        if (!read) return read.error();
-        mesh = std::move(*read);
-        for (const std::string& remark : mesh->selected().remarks) pair_.warn(console, mesh->file(), remark);
-    }
-    cli::ExitCode code = cli::ExitCode::done;
+    auto code = cli::ExitCode::done;
     for (const cli::MapPair& pair : *pairs) {
         run_.material = pair.material;
-        const auto compared = compare_pair(console, pair, mesh ? &*mesh : nullptr);
+        const auto compared = compare_pair(console, pair, mesh);
         if (!compared) return compared.error();
         code = std::max(code, *compared);
     }
@@ -169,7 +220,8 @@ Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const 
         if (printed == cli::ExitCode::done) printed = cli::print_level(console, run_, level, running_.json, k == first);
         const std::vector<std::string> violations = pair_.violations(level.number, level.error);
         for (const std::string& sentence : violations)
-            console.error(pair.material.empty() ? sentence : fmt::format("{}: {}", names[0], sentence));
+            console.error(pair.material.empty() && !has_folders_ ? sentence
+                                                                 : fmt::format("{}: {}", names[0], sentence));
         level.within = violations.empty();
         code = std::max({code, level.within ? cli::ExitCode::done : cli::ExitCode::findings, printed});
         levels.push_back(level);

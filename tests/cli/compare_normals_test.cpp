@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,6 +102,40 @@ TEST_F(CompareNormals, EveryLevelHasALine) {
     const Ran missing = compare({"waves.dds", "waves.dds", "--level", "8"});
     EXPECT_EQ(missing.code, 4);
     EXPECT_NE(missing.err.find("8 levels"), std::string::npos);
+}
+
+TEST_F(CompareNormals, FoldersAreComparedByTheNamesOfTheirFiles) {
+    for (const char* folder : {"old/walls", "new/walls"}) std::filesystem::create_directories(scratch_.path(folder));
+    scratch_.write("old/up.exr", scratch_.read("up.exr"));
+    scratch_.write("new/up.exr", scratch_.read("up.exr"));
+    scratch_.write("old/walls/a.exr", scratch_.read("up.exr"));
+    scratch_.write("new/walls/a.dds", scratch_.read("waves.dds"));
+    scratch_.write("old/gone.exr", scratch_.read("up.exr"));
+    scratch_.write("old/broken.dds", scratch_.read("waves.dds"));
+    scratch_.write("new/broken.dds", "DDS ");
+    scratch_.add_sample("report.png", "old/colour.png");
+    scratch_.add_sample("report.png", "new/colour.png");
+    const Ran ran = compare({"old", "new/", "--json", "--max-mean", "0.001"});
+    EXPECT_EQ(ran.code, 4) << "the damaged file, which is worse than a limit";
+    std::map<std::string, nlohmann::json> lines;
+    for (const std::string& line : lines_of(ran.out)) {
+        const auto json = nlohmann::json::parse(line);
+        lines[json["a"]] = json;
+    }
+    ASSERT_EQ(lines.size(), 3u) << ran.out;
+    EXPECT_EQ(lines.at("old/up.exr")["degrees"]["max"], 0.0);
+    EXPECT_EQ(lines.at("old/walls/a.exr")["b"], "new/walls/a.dds");
+    EXPECT_GT(lines.at("old/walls/a.exr")["degrees"]["mean"], 0.01);
+    EXPECT_EQ(lines.at("old/walls/a.exr")["warnings"].size(), 0u) << "those of another pair";
+    EXPECT_EQ(lines.at("old/broken.dds")["error"]["code"], "bad-data");
+    EXPECT_NE(ran.err.find("old/walls/a.exr: level 0: mean"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("old: not compared, because new/ has no file of that name: old/gone.exr"), std::string::npos)
+        << ran.err;
+    EXPECT_NE(ran.err.find("old: files left out, because they are no normal maps: 1\n"), std::string::npos) << ran.err;
+    EXPECT_NE(compare({"old", "new", "--quiet"}).out.find("old/up.exr, new/up.exr:\n"), std::string::npos);
+    EXPECT_EQ(compare({"old", "up.exr"}).err,
+              "compare-normals: error: up.exr: old is a folder, and is compared with another folder\n");
+    EXPECT_EQ(compare({"old", "new", "--heatmap", "h.png"}).code, 4);
 }
 
 TEST_F(CompareNormals, HeatMapHasTheMapAndALegend) {

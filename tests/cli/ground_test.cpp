@@ -171,6 +171,29 @@ TEST_F(OnTheGround, MetresInColoursNeedAWidth) {
     EXPECT_EQ(told.err.find(assumed), std::string::npos);
 }
 
+// Tiles of the web lie where their path says.
+TEST_F(OnTheGround, MapTilesHaveAPath) {
+    fs::create_directories(scratch_.path("dem/10/486"));
+    const std::string hills =
+        "from PIL import Image\n"
+        "tile = Image.new('RGB', (256, 256))\n"
+        "for y in range(256):\n"
+        "    for x in range(256):\n"
+        "        h = int((11500 - 10 * ((x - 128) ** 2 + (y - 128) ** 2) ** 0.5) * 10)\n"
+        "        tile.putpixel((x, y), (h >> 16, h >> 8 & 255, h & 255))\n"
+        "tile.save('dem/10/486/332.png')\n"
+        "tile.save('332.png')\n";
+    scratch_.write("hills.py", hills);
+    ASSERT_EQ(shell(scratch_, "/usr/bin/python3 hills.py").code, 0);
+    const Ran found = bake({"dem/10/486/332.png", "-o", "n.exr"});
+    EXPECT_EQ(found.code, 0) << found.err;
+    // 156543.03392 m cos(53.2256) / 2^10 are 91.5 m on a sphere; along a parallel, the Earth is wider there.
+    EXPECT_NE(found.out.find("332.png: 91.7 x 91.5 m a texel at 53.2 north, heights in metres"), std::string::npos)
+        << found.out;
+    EXPECT_EQ(found.err.find("nothing says how wide"), std::string::npos) << found.err;
+    EXPECT_NE(bake({"332.png", "-o", "m.exr"}).err.find("nothing says how wide"), std::string::npos);
+}
+
 TEST_F(OnTheGround, FractionsOfARangeHaveNoUnit) {
     fs::copy_file(TEX_SOURCE_DIR "/samples/waves.png", scratch_.path("w.png"));
     const std::string plain = baked({"w.png"});

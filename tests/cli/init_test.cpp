@@ -129,8 +129,13 @@ TEST_F(Init, MapTilesAreHeightsInBytes) {
         EXPECT_EQ(kind.out.rfind("heights       " + channel, 0), 0u) << kind.out;
         const std::string fix = "bake-normals " + file + " --channel " + channel + " --bumpiness auto";
         EXPECT_NE(shell(scratch_, "check-normals " + file).out.find("fix: " + fix), std::string::npos);
-        const Ran luma = shell(scratch_, "bake-normals " + file + " -o luma.png --no-sync");
-        EXPECT_NE(luma.err.find("--channel " + channel + " reads them so"), std::string::npos) << luma.err;
+        const std::string bake = "bake-normals " + file + " --no-sync ";
+        const Ran found = shell(scratch_, bake + "-o found.exr");
+        EXPECT_NE(found.out.find("--channel " + channel + ": R, G and B are the bytes of heights"), std::string::npos)
+            << found.out;
+        EXPECT_EQ(shell(scratch_, bake + "-o named.exr --channel " + channel).code, 0);
+        EXPECT_EQ(scratch_.read("found.exr"), scratch_.read("named.exr"));
+        EXPECT_EQ(shell(scratch_, bake + "-o luma.exr --channel luma").out, "");
         const Ran fixed = shell(scratch_, fix + " --format rgb8 -o fixed.png --no-sync");
         EXPECT_EQ(fixed.code, 0) << fixed.err;
         EXPECT_EQ(shell(scratch_, "check-normals fixed.png").code, 0);

@@ -16,6 +16,7 @@
 #include <tex/file.h>
 
 #include "formats/ground.h"
+#include "formats/map_tile.h"
 
 namespace tex {
 namespace {
@@ -256,6 +257,23 @@ GridPlace grid(double step, double east, double north) {
 }
 
 constexpr Extent kGrid{100, 100};
+
+// The corner of 10/486/332 is an example in the documentation of mercantile.
+TEST(Ground, MapTilesLieWhereTheirPathSays) {
+    for (const char* path : {"10/486/332.png", "/srv/dem/10/486/332.webp"}) {
+        const std::optional<GridPlace> place = map_tile_place(path, {256, 256});
+        ASSERT_TRUE(place) << path;
+        const std::optional<Ground> ground = ground_of(*place, {256, 256}, {}).ground;
+        ASSERT_TRUE(ground) << path;
+        EXPECT_NEAR(latitude_of(*ground, -0.5), 53.33087298301705, 1e-9);
+        EXPECT_NEAR(latitude_of(*ground, 255.5), 53.12040528310657, 1e-9);
+    }
+    for (const char* path : {"332.png", "486/332.png", "a/486/332.png", "10/1024/332.png", "10/486/1024.png",
+                             "10/486/332.jpg", "10/486/-332.png", "10/486/332a.png", "40/486/332.png", "10//332.png"})
+        EXPECT_FALSE(map_tile_place(path, {256, 256})) << path;
+    for (const Extent extent : {Extent{256, 128}, Extent{300, 300}, Extent{2048, 2048}})
+        EXPECT_FALSE(map_tile_place("10/486/332.png", extent));
+}
 
 TEST(Ground, CoordinatesSayWhatTheyAreIfTheyCanBeNothingElse) {
     struct Row {

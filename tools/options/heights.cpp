@@ -234,22 +234,26 @@ std::string luma_text(std::int64_t texels) {
 
 Result<void> HeightReader::accept(const Job& job) const {
     if (heights.options.channel != HeightChannel::automatic) return {};
-    std::string sentence = no_heights_text(job.task.input, job.read_options);
-    if (sentence.empty()) return {};
-    return Error{ErrorCode::bad_data, job.task.input, sentence + kTakeAny};
+    const JudgedColours judged = judge_colours(job.task.input, job.read_options);
+    if (judged.words.empty()) return {};
+    return Error{ErrorCode::bad_data, job.task.input, judged.words + kTakeAny};
 }
 
-void HeightReader::note(Job& job, const HeightReport& report) {
+JudgedColours HeightReader::judge(const Job& job, const HeightReport& report) const {
+    const bool is_asked_for = heights.options.channel != HeightChannel::automatic;
+    return report.luma_texels == 0 || is_asked_for ? JudgedColours() : judge_colours(job.task.input, job.read_options);
+}
+
+void HeightReader::note(Job& job, const HeightReport& report, const JudgedColours& judged) {
     if (heights.options.deband != Deband::off) note_deband(job, report.deband, heights.options.deband);
     job.report["heights"] = name_of(kFileValuesNames, report.stored ? FileValues::stored : FileValues::unit);
     if (!report.remark.empty()) job.warn(report.remark);
-    if (report.implausible_texels > 0) note_implausible(job, report.implausible_texels, heights.options.channel);
+    if (report.implausible_texels > 0)
+        note_implausible(job, report.implausible_texels, judged.channel.value_or(heights.options.channel));
     const bool chose_stored = report.stored && heights.values == FileValues::automatic;
     if (chose_stored) job.remark(kStoredText);
-    std::string no_heights;
-    if (report.luma_texels > 0) no_heights = no_heights_text(job.task.input, job.read_options);
-    const bool takes_luma = report.luma_texels > 0 && no_heights.empty();
-    if (!no_heights.empty()) job.warn(std::move(no_heights));
+    const bool takes_luma = report.luma_texels > 0 && judged.words.empty();
+    if (report.luma_texels > 0 && !takes_luma) job.warn(judged.words);
     if (takes_luma) job.remark(luma_text(report.luma_texels));
     const std::lock_guard lock(mutex_);
     if (chose_stored) stored_.add(job.task.input);

@@ -13,6 +13,7 @@
 #include <tex/height.h>
 
 #include "cli/command.h"
+#include "options/input_kind.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -102,8 +103,12 @@ public:
     // An error if the job's input is a normal map.
     [[nodiscard]] Result<void> accept(const Job& job) const;
 
+    // What the job's picture is, if its luma was taken for heights without anybody asking for it.
+    [[nodiscard]] JudgedColours judge(const Job& job, const HeightReport& report) const;
+
     // Counts the results of reading a job's heights. Any thread may call this.
-    void note(Job& job, const HeightReport& report);
+    void note(Job& job, const HeightReport& report, const JudgedColours& judged);
+    void note(Job& job, const HeightReport& report) { note(job, report, judge(job, report)); }
 
     // Prints one warning for all files about which the same must be said.
     void warn_of_files(Console& console) const;

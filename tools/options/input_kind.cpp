@@ -55,16 +55,19 @@ std::string no_map_text(const JudgedPicture& judged) { return "this is no normal
 
 bool names_layout(const JudgedPicture& judged) { return judged.words.find("--swizzle") != std::string::npos; }
 
-std::string no_heights_text(const std::string& path, const ReadOptions& read) {
+JudgedColours judge_colours(const std::string& path, const ReadOptions& read) {
     const std::optional<JudgedPicture> judged = judge_picture(path, read);
     if (judged && judged->height_bytes) {
         const std::string_view channel = name_of(kHeightChannelNames, *judged->height_bytes);
-        return fmt::format("R, G and B are the bytes of heights, as in map tiles; --channel {} reads them so", channel);
+        return {
+            fmt::format("R, G and B are the bytes of heights, as in map tiles; --channel {} reads them so", channel),
+            judged->height_bytes};
     }
     if (!judged || !judged->is_vectors || judged->is_no_map) return {};
-    if (judged->has_alpha) return "this is a normal map; --channel a takes its alpha as heights";
-    return "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "
-           "mip-normals make textures";
+    if (judged->has_alpha) return {"this is a normal map; --channel a takes its alpha as heights"};
+    return {
+        "this is a normal map, and holds no heights; integrate-normals makes heights of it, pack-normals and "
+        "mip-normals make textures"};
 }
 
 }  // namespace tex::cli

@@ -40,8 +40,11 @@ struct JudgedPicture {
 // Added where a manifest makes nothing of such an input.
 inline constexpr const char* kTakeAny = "; check = { inputs = false } in the rule makes it all the same";
 
-// What to say of a picture whose luma would be taken for heights if it is a normal map, or holds the bytes of heights;
-// empty: nothing.
-[[nodiscard]] std::string no_heights_text(const std::string& path, const ReadOptions& read);
+// A picture of colours of which the luma would be taken for heights.
+struct JudgedColours {
+    std::string words = {};                     // if it is a normal map, or holds the bytes of heights; or empty
+    std::optional<HeightChannel> channel = {};  // that reads such bytes
+};
+[[nodiscard]] JudgedColours judge_colours(const std::string& path, const ReadOptions& read);
 
 }  // namespace tex::cli

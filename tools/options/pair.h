@@ -49,8 +49,9 @@ public:
     [[nodiscard]] std::vector<std::string> violations(int level, const AngularError& error) const;
 
     void warn(Console& console, const std::string& file, const std::string& sentence);
-    // The warnings so far.
+    // The warnings so far, or since forget_warnings().
     [[nodiscard]] const std::vector<FileWarning>& warnings() const { return warnings_; }
+    void forget_warnings() { warnings_.clear(); }
 
 private:
     std::optional<YAxis> y_[2];

@@ -17,7 +17,7 @@ namespace tex::cli {
 
 // What every line of JSON contains.
 struct ComparisonRun {
-    const std::vector<std::string>& inputs;  // the two files
+    std::vector<std::string> inputs;  // the two files
     const std::vector<FileWarning>& warnings;
     Clock::time_point start = Clock::now();
     std::string material = {};  // of the maps in models that are compared

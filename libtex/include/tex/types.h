@@ -370,7 +370,7 @@ struct Image {
 
     std::string remark;  // what the reader had to find out, such as the extent of a file without a header, or empty
 
-    // The size of a texel on the ground, if the file states it: GeoTIFF, HGT, ESRI grids, world files.
+    // The size of a texel on the ground, if the file states it: GeoTIFF, HGT, ESRI grids, world files, map tiles.
     std::optional<Ground> ground;
     std::string ground_remark;  // what was assumed about it, or why it could not be used, or empty
 

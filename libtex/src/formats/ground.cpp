@@ -12,6 +12,7 @@
 
 #include "files/beside.h"
 #include "files/path_names.h"
+#include "formats/map_tile.h"
 #include "formats/prj.h"
 #include "formats/words.h"
 #include "rows/ground.h"
@@ -214,6 +215,8 @@ GroundFound ground_of(const RowSource& rows, const InputFile& file) {
         const std::string text = world_file_text(path);
         if (!text.empty()) place = world_file_place(text).value_or(GridPlace());
     }
+    if (place.model == GridModel::none && !has_numbers)
+        place = map_tile_place(path, rows.extent()).value_or(GridPlace());
     if (place.model == GridModel::none) return {};
     if (rows.orientation() != 1) return unused("the picture was turned or mirrored");
     const bool needs_unit = place.model == GridModel::numbers;

@@ -21,7 +21,8 @@ struct GroundFound {
 
 // What the picture in `file` states. The unit of a grid that does not name its own is that of a .prj file beside it; or
 // else degrees or metres, where its coordinates can be nothing else. A TIFF or PNG of numbers without a grid has that
-// of a world file beside it. Nothing is beside a stream or bytes in memory. May throw std::bad_alloc.
+// of a world file beside it, and a tile of a web map lies where its path says (map_tile.h). Nothing is beside a stream
+// or bytes in memory. May throw std::bad_alloc.
 [[nodiscard]] GroundFound ground_of(const RowSource& rows, const InputFile& file);
 
 // The ground of a grid, and of what a .prj file says of it (or nothing).
