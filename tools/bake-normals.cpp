@@ -216,10 +216,12 @@ void BakeNormals::note_strength(cli::Job& job, const Report& done) const {
 // Slopes that nobody sees.
 template <class Report>
 void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
-    constexpr double kFaint = 5.0, kDegrees = 57.295779513082320877;  // degrees of a radian
+    constexpr double kDegrees = 57.295779513082320877;  // of a radian
+    // Whoever gave no strength cannot have meant faint bumps.
+    const double faint = reader_.strength.is_given || done.on_ground ? 5.0 : 12.0;
     const double degrees = kDegrees * std::atan(static_cast<double>(done.usual_slope));
     const bool is_asked_for = done.strength.x == 0.0f && done.strength.y == 0.0f;
-    if (degrees >= kFaint || done.auto_strength == 0.0f || is_asked_for) return;  // 0: a placeholder
+    if (degrees >= faint || done.auto_strength == 0.0f || is_asked_for) return;  // 0: a placeholder
     const std::string remedy = done.on_ground
                                    ? fmt::format("--vertical-scale {} would make it 45", done.auto_strength)
                                    : fmt::format("--bumpiness auto would be --bumpiness {}", done.auto_strength);

@@ -211,7 +211,7 @@ Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const 
     Plane<float> degrees;                                    // for the first level
     const double until = documents_.has_page() ? 0.8 : 1.0;  // of the progress; smaller levels take hardly any time
     for (std::size_t k = first; k < end; ++k) {
-        if (auto fits = cli::PairOptions::check_level(k, *a, *b, names); !fits) return fits.error();
+        if (auto fits = cli::PairOptions::check_level(k, *a, *b, pair); !fits) return fits.error();
         const Execution shown = running_.step(console, k == first ? 0.6 : until, until, fmt::format("level {}", k));
         auto comparison = mesh != nullptr ? compare(a->levels[k], b->levels[k], mesh->selected().part, 0, shown)
                                           : compare(a->levels[k], b->levels[k], shown);

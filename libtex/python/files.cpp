@@ -8,6 +8,23 @@
 namespace tex::python {
 namespace {
 
+// SourceOptions of somebody who may not look at `info`.
+struct NormalsKeywords : SourceOptions {
+    NormalsKeywords() { doubt_y = true; }
+};
+
+template <class F>
+void each_field(NormalsKeywords& o, F& f) {
+    each_field(static_cast<SourceOptions&>(o), f);
+}
+
+void warn_of_y(const std::string& path) {
+    const std::string text = path +
+                             ": y is taken to point up, but the texels show that it points down; "
+                             "unpack={'y_axis': 'down'} reads it so";
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
 constexpr const char* kPath = "str | PathLike[str]";
 
 // The container that a word or the extension of a path names.
@@ -48,17 +65,21 @@ void add_reading(Module& module) {
                                  facts["calls_filtered"] = info.calls_filtered;
                                  return facts;
                              });
-    module.verb<SourceOptions, Running>(
+    module.verb<NormalsKeywords, Running>(
         "read_normals", {{"path", kPath}, {"base_only", "bool", "False"}},
         "tuple[list[NDArray[np.float32]], dict[str, Any]]",
         "(chain, info): a list of arrays, one for each level, with y up, and a dict of the fields of SourceInfo. "
         "Levels "
-        "with other data beside the normals are NormalMaps; unpack={'others': ['alpha', 'blue', 'length']} says which.",
-        [](Call& call, SourceOptions& options, Running& running) -> py::object {
+        "with other data beside the normals are NormalMaps; unpack={'others': ['alpha', 'blue', 'length']} says which. "
+        "Warns (UserWarning) if the file does not state the direction of y, and its texels show that green points "
+        "down; "
+        "unpack={'y_axis': 'down'} reads it so.",
+        [](Call& call, NormalsKeywords& options, Running& running) -> py::object {
             const std::string path = path_from(call["path"], "path");
             const bool base_only = call.has("base_only") && Convert<bool>::from(call["base_only"], "base_only");
             Source source = running.run([&](const Execution& e) { return read_normals(path, options, base_only, e); });
             const py::dict info = describe(source.info);
+            if (source.info.y_doubtful) warn_of_y(path);
             return py::make_tuple(arrays_of(std::move(source.chain)), info);
         });
 }

@@ -9,8 +9,12 @@ baseline=known.json
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/staged"
-git diff --cached --name-only -z --diff-filter=ACMR -- '*_n.dds' '*_n.ktx2' '*_n.png' '*_n.exr' '*_n.tga' '*_n.tif' \
-    '*_n.tiff' '*_n.jpg' '*_n.jpeg' '*_n.webp' '*_n.bmp' >"$work/list"
+# What projects call normal maps; the end of the name decides, whatever its case.
+set --
+for type in dds ktx2 png exr tga tif tiff jpg jpeg webp bmp; do
+    set -- "$@" ":(icase)*[_-]n.$type" ":(icase)*[_-]nrm.$type" ":(icase)*[_-]nor.$type" ":(icase)*normal*.$type"
+done
+git diff --cached --name-only -z --diff-filter=ACMR -- "$@" >"$work/list"
 [ -s "$work/list" ] || exit 0
 git checkout-index -z --stdin --prefix="$work/staged/" <"$work/list"
 # Both stand beside the maps there as in the repository, so that their patterns and names fit.

@@ -57,6 +57,32 @@ protected:
     Scratch scratch_;
 };
 
+// ImageMagick makes and reads the texture of three maps.
+TEST_F(BakeOcclusion, GoesIntoAChannelOfAnotherTexture) {
+    const std::string size = "$(identify -format %wx%h h.png)";
+    ASSERT_EQ(shell(scratch_, "convert -size " + size + " xc:'rgb(1,100,200)' -define png:color-type=2 orm.png").code,
+              0);
+    const std::string bake = "bake-normals h.png -o n.png --bumpiness 6 --occlusion-out ";
+    run(bake + "ao.exr");
+    run(bake + "ao_orm.png --occlusion-into orm.png");
+    EXPECT_LE(difference("ao_orm.png", 0, image("ao.exr").planes[0]), 0.501f / 255.0f);
+    const Ran rest =
+        shell(scratch_, "convert ao_orm.png -channel GB -separate -format '%k %[fx:round(255*mean)],' info:");
+    EXPECT_EQ(rest.out, "1 100,1 200,") << "the other channels are as before";
+    EXPECT_EQ(image("ao_orm.png").normal_mark, "") << "it holds no normals";
+    run(bake + "blue.png --occlusion-into orm.png:b");
+    EXPECT_LE(difference("blue.png", 2, image("ao.exr").planes[0]), 0.501f / 255.0f);
+    refuses("bake-normals h.png -o n.png --occlusion-into orm.png", "--occlusion-into needs --occlusion-out");
+    refuses(bake + "orm.png --occlusion-into orm.png", "orm.png");
+    refuses(bake + "x.png --occlusion-into orm.png:luma", "is not one of r, g, b, a");
+    ASSERT_EQ(shell(scratch_, "convert -size 7x7 xc:white -define png:color-type=2 small.png").code, 0);
+    const Ran small = shell(scratch_, bake + "x.png --occlusion-into small.png");
+    EXPECT_EQ(small.code, 4);
+    EXPECT_NE(small.err.find("small.png: is 7x7 texels, and the occlusion is "), std::string::npos) << small.err;
+    EXPECT_NE(shell(scratch_, bake + "x.png --occlusion-into orm.png:a").err.find("has no channel A"),
+              std::string::npos);
+}
+
 TEST_F(BakeOcclusion, FilesHoldWhatTheLibraryMakes) {
     const Ran ran = run(
         "bake-normals h.png -o n.png --bumpiness 6 --occlusion-out ao.png --sky-view-out sky.exr --bent-out bent.png "

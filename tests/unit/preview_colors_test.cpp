@@ -126,8 +126,8 @@ TEST(PreviewMeasures, TiltEndsAtAnAngleThatSuitsTheMap) {
 TEST(PreviewMeasures, CurlTellsGreenThatIsUpsideDown) {
     const auto sound = measured(Show::curl, waves({96, 96}, false), 0.0f);
     const auto wrong = measured(Show::curl, waves({96, 96}, true), 0.0f);
-    EXPECT_EQ(sound.scale.title.find("curl: y up, r="), 0u) << sound.scale.title;
-    EXPECT_EQ(wrong.scale.title.find("curl: y DOWN, r=-"), 0u) << wrong.scale.title;
+    EXPECT_EQ(sound.scale.title.find("curl: y up as read, r="), 0u) << sound.scale.title;
+    EXPECT_EQ(wrong.scale.title.find("curl: y DOWN as read, r=-"), 0u) << wrong.scale.title;
     double small = 0.0, large = 0.0;
     for (int j = 1; j < 95; ++j) {
         for (int i = 1; i < 95; ++i) {

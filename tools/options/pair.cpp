@@ -120,8 +120,8 @@ void PairOptions::warn(Console& console, const std::string& file, const std::str
     warnings_.push_back({file, sentence});
 }
 
-Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, const MipChain& b,
-                                      const std::vector<std::string>& names) {
+Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, const MipChain& b, const MapPair& pair) {
+    const std::vector<std::string> names = pair.names();
     const MipChain* const chains[] = {&a, &b};
     for (std::size_t k = 0; k < 2; ++k) {
         const std::size_t count = chains[k]->levels.size();
@@ -137,8 +137,12 @@ Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, cons
     for (int halvings = 1; level_extent(large, halvings).width >= small.width && large.width > small.width;
          ++halvings) {
         if (level_extent(large, halvings) != small) continue;
-        advice = fmt::format("; pack-normals {} --max-size {} -o SMALL makes a map of that extent",
-                             shell_word(names[a_is_larger ? 0 : 1]), std::max(small.width, small.height));
+        const ComparedMap& larger = pair.maps[a_is_larger ? 0 : 1];
+        const std::string map = !larger.model ? shell_word(larger.file)
+                                              : fmt::format("{} --material {}", shell_word(larger.path()),
+                                                            shell_word(larger.model->material));
+        advice = fmt::format("; pack-normals {} --max-size {} -o SMALL{} makes a map of that extent", map,
+                             std::max(small.width, small.height), larger.model ? ".png" : "");
         break;
     }
     return Error{ErrorCode::bad_option, names[1],

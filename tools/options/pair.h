@@ -41,9 +41,9 @@ public:
     // levels.
     [[nodiscard]] std::pair<std::size_t, std::size_t> levels(const MipChain& a, const MipChain& b,
                                                              const std::vector<std::string>& names, Console& console);
-    // Returns an error if a map lacks `level` or if the two differ in extent there. `names` are their files.
+    // Returns an error if a map lacks `level` or if the two differ in extent there.
     [[nodiscard]] static Result<void> check_level(std::size_t level, const MipChain& a, const MipChain& b,
-                                                  const std::vector<std::string>& names);
+                                                  const MapPair& pair);
 
     // A sentence for each figure of a level that is above its limit.
     [[nodiscard]] std::vector<std::string> violations(int level, const AngularError& error) const;

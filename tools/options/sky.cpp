@@ -2,16 +2,64 @@
 
 #include "options/sky.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
+#include <tex/file.h>
+#include <tex/format.h>
 
 #include "cli/usage_error.h"
 #include "cli/value.h"
 #include "fields/surface_fields.h"
+#include "tasks/name_pattern.h"
 
 namespace tex::cli {
+
+namespace {
+
+// The picture of `file` with other values, from 0 to 1, in one of its channels. The codes of the other channels stay.
+Result<Texture> copy_with(const ChannelFile& file, const Plane<float>& values, const ReadOptions& read) {
+    const auto whole = read_texture(file.file, read);
+    if (!whole) return whole.error();
+    const FormatInfo& format = format_info(whole->format);
+    const auto place = static_cast<std::size_t>(file.channel) - static_cast<std::size_t>(HeightChannel::r);
+    const auto channels = static_cast<std::size_t>(format.channels);
+    const auto refused = [&](std::string reason) { return Error{ErrorCode::bad_data, file.file, std::move(reason)}; };
+    if (format.has_blocks() || format.sample != SampleKind::unorm || (format.bits != 8 && format.bits != 16))
+        return refused("occlusion goes into pictures of 8 or 16 bits alone");
+    if (place >= channels)
+        return refused(fmt::format("has no channel {}, into which --occlusion-into writes", "RGBA"[place]));
+    const Extent extent = whole->levels.front().extent;
+    if (extent != values.extent()) {
+        return refused(fmt::format("is {}x{} texels, and the occlusion is {}x{}", extent.width, extent.height,
+                                   values.extent().width, values.extent().height));
+    }
+    Texture copy{whole->format, {whole->levels.front()}};
+    std::byte* code = copy.levels.front().bytes.data();
+    const std::size_t size = format.bits == 8 ? 1 : 2;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i, code += size * channels) {
+            const float greatest = size == 1 ? 255.0f : 65535.0f;
+            const auto number = static_cast<std::uint16_t>(std::clamp(values.at(i, j), 0.0f, 1.0f) * greatest + 0.5f);
+            if (size == 1) {
+                code[place] = static_cast<std::byte>(number);
+            } else {
+                std::memcpy(code + 2 * place, &number, 2);
+            }
+        }
+    }
+    return copy;
+}
+
+}  // namespace
+
+ChannelFile SkyOptions::into_of(const Task& task) const {
+    return {NamePattern(into_.file).expand(name_fields(task.named())), into_.channel};
+}
 
 void SkyOptions::add(Command& command, const FileOptions& files) {
     command.group("Occlusion");
@@ -19,6 +67,16 @@ void SkyOptions::add(Command& command, const FileOptions& files) {
         .add(command, files, "--occlusion-out",
              "write ambient occlusion: 1 is open, 0 closed; of many inputs a pattern as --name")
         .often(2, "write ambient occlusion of the heights");
+    command.option(
+        "--occlusion-into", "FILE[:CHANNEL]",
+        "write it into a copy of FILE, in R or this channel (r, g, b, a), as textures of occlusion, roughness "
+        "and metalness (ORM) have it; the copy is the file of --occlusion-out",
+        [this](const std::string& text) {
+            into_ = parse_channel_file(text);
+            if (into_.channel == HeightChannel::automatic) into_.channel = HeightChannel::r;
+            if (into_.channel > HeightChannel::a) throw UsageError("is not one of r, g, b, a");
+            if (into_.file == "-") throw UsageError("needs a file, not standard input");
+        });
     sky_view_.add(command, files, "--sky-view-out", "write the part of the sky above each texel: 1 is all of it");
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open");
     horizon_.add(command, files, "--horizon-out",
@@ -43,6 +101,7 @@ void SkyOptions::add(Command& command, const FileOptions& files) {
 
 void SkyOptions::amend(Task& task) const {
     for (const MapOutput* const map : {&occlusion_, &sky_view_, &bent_, &horizon_}) map->amend(task);
+    if (!into_.file.empty()) task.own.push_back(into_of(task).file);
 }
 
 bool SkyOptions::is_given() const {
@@ -65,6 +124,8 @@ void SkyOptions::apply(BakeFileOptions& options, bool is_extra) const {
 void SkyOptions::check(const Command& command, bool is_extra) const {
     if (command.given("--horizon-directions") && !horizon_.is_given())
         throw UsageError("--horizon-directions needs --horizon-out");
+    if (!into_.file.empty() && !occlusion_.is_given())
+        throw UsageError("--occlusion-into needs --occlusion-out, which names the copy");
     const bool has_light = occlusion_.is_given() || sky_view_.is_given() || bent_.is_given() || is_extra;
     if (command.given("--occlusion-directions") && !has_light)
         throw UsageError(
@@ -77,7 +138,13 @@ void SkyOptions::check(const Command& command, bool is_extra) const {
 }
 
 Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y, const MipOptions* mips) const {
-    if (occlusion_.is_given()) {
+    if (occlusion_.is_given() && !into_.file.empty()) {
+        const auto copy = copy_with(into_of(job.task), maps.occlusion, job.read_options);
+        if (!copy) return copy.error();
+        Json report;
+        if (auto done = occlusion_.write(job, *copy, report); !done) return done;
+        job.report["occlusion"] = std::move(report);
+    } else if (occlusion_.is_given()) {
         if (auto done = write_plane(job, occlusion_, std::move(maps.occlusion), "occlusion", mips); !done) return done;
     }
     if (sky_view_.is_given()) {

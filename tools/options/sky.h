@@ -8,12 +8,14 @@
 #include <tex/pipeline.h>
 
 #include "cli/command.h"
+#include "options/heights.h"
 #include "options/maps.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
 
-// --occlusion-out, --sky-view-out, --bent-out, --horizon-out, --horizon-directions, --occlusion-directions,
+// --occlusion-out, --occlusion-into, --sky-view-out, --bent-out, --horizon-out, --horizon-directions,
+// --occlusion-directions,
 // --occlusion-distance.
 class SkyOptions {
 public:
@@ -38,8 +40,11 @@ private:
                                                   const char* key, const MipOptions* mips);
     [[nodiscard]] Result<void> write_horizons(Job& job, std::vector<Plane<float>> horizons) const;
 
+    [[nodiscard]] ChannelFile into_of(const Task& task) const;
+
     OcclusionOptions options_;
     int horizons_ = 8;
+    ChannelFile into_;  // its file is a pattern, or empty
     MapOutput occlusion_, sky_view_, bent_, horizon_;
 };
 

@@ -102,10 +102,10 @@ std::string seams_text(const CheckReport& report) {
     if (!report.seams) return {};
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
-        "{}: seams: {}: {} edges of the mesh, mean {:.2f}, p99 {:.2f}, mean of the worst edge {:.2f} degrees (a map of "
-        "this detail that was baked for its mesh and decoder has a mean under {:.1f})\n",
-        later_title(report), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.p99,
-        seams.worst, seams.usual);
+        "{}: seams: {}: {} edges of the mesh, mean {:.2f} degrees, where a map of this detail that was baked for its "
+        "mesh and decoder has less than {:.1f}; p99 {:.2f}, worst edge {:.2f}\n",
+        later_title(report), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.usual,
+        seams.p99, seams.worst);
 }
 
 Json findings_json(const CheckReport& report, const Requirements& require) {

@@ -340,9 +340,13 @@ Fix fix_of(const Finding& finding, const CheckReport& report, const Requirements
         fix += " --fill-invalid";
     fix += " --format SAME -o FIXED";
     std::string advice = mirror_advice(id, *target, report, require);
-    // Occlusion that stays near 1 looks like the z of short vectors.
-    if (id == "N201" && (target->encoding == Encoding::rgba8 || target->encoding == Encoding::rgba16))
-        advice = "If blue holds occlusion, as in LabPBR, that would wipe it out: --swizzle labpbr checks x and y alone";
+    // Occlusion that stays near 1 looks like the z of short vectors, and a command would wipe it out.
+    if (id == "N201" && (target->encoding == Encoding::rgba8 || target->encoding == Encoding::rgba16)) {
+        return {
+            fmt::format("If blue holds z: {}. If it holds occlusion, as in LabPBR, --swizzle labpbr checks x and y "
+                        "alone.",
+                        filled_in(std::move(fix), *target, report, require))};
+    }
     return {filled_in(std::move(fix), *target, report, require), true, std::move(advice)};
 }
 

@@ -59,6 +59,13 @@ bool has_rule(const CheckReport& report, std::string_view id) {
                        [id](const Finding& finding) { return finding.rule->id == id; });
 }
 
+// What the texels show, or else make likely: in maps that are too small to be sure.
+std::optional<YAxis> likely_y(const CheckReport& report) {
+    constexpr double kClear = 0.5;
+    if (report.y.y || std::abs(report.y.correlation) < kClear) return report.y.y;
+    return report.y.correlation > 0.0 ? YAxis::up : YAxis::down;
+}
+
 // What a rule's only step says about normals, as TOML.
 std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const std::string& layout) {
     std::vector<std::string> settings;
@@ -179,9 +186,9 @@ public:
                 unknown.push_back(files_[k].path);
         }
         if (!unknown.empty() && unknown.size() == rule.files.size()) {
-            text += "# A guess: the texels do not show where green points.\n";
+            text += "# A guess: the texels do not show for sure where green points.\n";
         } else if (!unknown.empty()) {
-            text += "# A guess for these, whose texels do not show where green points; it is so in the others:\n";
+            text += "# A guess for these, whose texels do not show for sure where green points:\n";
             for (const std::string& path : unknown) text += fmt::format("#     {}\n", printable(path));
         }
         if (rule.settings.find("drop = true") != std::string::npos)
@@ -214,8 +221,8 @@ private:
             // pack-normals reads other data in blue, and the channels of the X-Ray engine, only where it is told.
             const bool is_labpbr = report.swizzle == kSwizzleXy && format_info(report.format).channels > 2;
             const std::string layout = is_labpbr || has_rule(report, "N223") ? swizzle_word(report.swizzle) : "";
-            if (report.y.y) {
-                file.settings = pack_step(report.y.y, report, layout);
+            if (const std::optional<YAxis> y = likely_y(report)) {
+                file.settings = pack_step(y, report, layout);
             } else {
                 // LabPBR has green down.
                 for (const YAxis y : {is_labpbr ? YAxis::down : YAxis::up, is_labpbr ? YAxis::up : YAxis::down})

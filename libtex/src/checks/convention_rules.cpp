@@ -31,8 +31,10 @@ std::string undecided_by(const Curl& curl) {
         return "the slopes change along the axes alone, as those of lines and bevels do";
     if (std::abs(curl.correlation) < kLeastCorrelation)
         return "the correlation is nearer to 0 than " + decimal(kLeastCorrelation, 1);
-    return "parts of the map contradict each other (confidence " + decimal(curl.confidence, 3) + " of at least " +
-           decimal(kLeastConfidence, 2) + ")";
+    constexpr double kClear = 0.5;  // of maps that are too small to be sure of anything
+    const std::string why = std::abs(curl.correlation) > kClear ? "there are too few texels to be sure"
+                                                                : "parts of the map contradict each other";
+    return why + " (confidence " + decimal(curl.confidence, 3) + " of at least " + decimal(kLeastConfidence, 2) + ")";
 }
 
 // What the number is, because a small one is no certainty.
@@ -58,7 +60,11 @@ std::string contradiction(const CheckContext& context, YAxis wanted, const std::
 }  // namespace
 
 void check_convention_rules(const CheckContext& context, Findings& findings) {
-    if (!context.sampled_ok) return;
+    const auto& require = context.options.require;
+    if (!context.sampled_ok) {
+        if (require.y && context.has_vectors) findings.add("N403", "the picture is too small or too flat to show it");
+        return;
+    }
     check_mixed(context, findings);
     const auto add = [&](std::string_view id, std::string message) {
         Finding& finding = findings.add(id, std::move(message));
@@ -67,7 +73,6 @@ void check_convention_rules(const CheckContext& context, Findings& findings) {
         finding.unit = "correlation";
         finding.confidence = by_heights ? kHeightsConfidence : context.y.confidence;
     };
-    const auto& require = context.options.require;
     if (require.y && !context.y.y)
         add("N403", "the texels do not show it: " + undecided_by(context.curl) + curl_text(context));
     if (!context.y.y) return;

@@ -120,11 +120,13 @@ void check_constant(const CheckContext& context, Findings& findings) {
     finding.unit = "ratio";
 }
 
-// Whether blue is the z that x and y imply, and 2 blue - 1 is not. Maps of unit vectors that are nearly flat show it,
-// too. The sign of 2 blue - 1 does not count: bevels may lean beyond the vertical.
-bool follows_from_zero(const Stored& stored) {
-    constexpr double kLead = 6.0, kLeastError = 1.5 / 127.5;
-    constexpr double kClearLead = 10.0, kLeastClearError = 1.0 / 127.5;  // nearly flat
+// How far z is from what x and y imply, in the mean, if it is blue and if it is 2 blue - 1. The sign of the latter does
+// not count: bevels may lean beyond the vertical.
+struct FitOfZ {
+    double as_stored = 0.0, from_zero = 0.0;
+};
+
+FitOfZ fit_of_z(const Stored& stored) {
     double as_stored = 0.0, from_zero = 0.0, count = 0.0;
     visit_samples(stored, [&](const double(&c)[3], int, int) {
         const double x = 2.0 * c[0] - 1.0, y = 2.0 * c[1] - 1.0, square = 1.0 - x * x - y * y;
@@ -134,8 +136,15 @@ bool follows_from_zero(const Stored& stored) {
         from_zero += std::abs(c[2] - z);
         count += 1.0;
     });
-    if (as_stored > kLeastError * count) return from_zero * kLead < as_stored;
-    return as_stored > kLeastClearError * count && from_zero * kClearLead < as_stored;
+    return count > 0.0 ? FitOfZ{as_stored / count, from_zero / count} : FitOfZ();
+}
+
+// Whether blue is that z, and 2 blue - 1 is not. Maps of unit vectors that are nearly flat show it, too.
+bool follows_from_zero(const FitOfZ& fit) {
+    constexpr double kLead = 6.0, kLeastError = 1.5 / 127.5;
+    constexpr double kClearLead = 10.0, kLeastClearError = 1.0 / 127.5;  // nearly flat
+    if (fit.as_stored > kLeastError) return fit.from_zero * kLead < fit.as_stored;
+    return fit.as_stored > kLeastClearError && fit.from_zero * kClearLead < fit.as_stored;
 }
 
 // Blue ranges from 0 to 1 as z of the upper half of the sphere does. Without z below 0, the vectors must be much
@@ -145,9 +154,13 @@ bool holds_z_from_zero(const CheckContext& context) {
     const KindMeasure& m = context.kind_measure;
     constexpr double kUnit = 0.95, kBetter = 0.05, kMuchBetter = 0.25, kZRelated = 0.8;
     constexpr float kUprightBlue = 0.97f;
+    // Channels that were stretched to their ends one by one (auto-level) fit worse: 8 codes and more.
+    constexpr double kMostError = 5.0 / 255.0;
     const int blue = context.stored.channel(Component::z);
     if (blue < 0 || !(context.counts.high[static_cast<std::size_t>(blue)] > kUprightBlue)) return false;
-    if (context.sampled_ok && follows_from_zero(context.stored)) return true;
+    const FitOfZ fit = fit_of_z(context.stored);
+    if (fit.from_zero > kMostError) return false;
+    if (context.sampled_ok && follows_from_zero(fit)) return true;
     const double unit = m.as(Reading::z_from_zero).unit, better = unit - m.as(Reading::as_stored).unit;
     const bool is_better = m.behind > kBehindShare ? better > kBetter : context.sampled_ok && better > kMuchBetter;
     return m.texels > 0 && unit > kUnit && is_better && m.z_correlation > kZRelated;

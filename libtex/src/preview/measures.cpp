@@ -88,7 +88,7 @@ std::string curl_title(const Curl& curl) {
     const std::string figure = ", r=" + number(curl.correlation);
     constexpr double kSure = 0.95;
     if (curl.confidence < kSure) return "curl: y unclear" + figure;
-    return (curl.correlation > 0.0 ? "curl: y up" : "curl: y DOWN") + figure;
+    return (curl.correlation > 0.0 ? "curl: y up as read" : "curl: y DOWN as read") + figure;
 }
 
 Result<Measure> measure_curl_of(const NormalMap& map, float maximum, const Execution& execution) {
