@@ -3,6 +3,7 @@
 #include "kernels/bc7_batch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "blocks/bc7_modes.h"
 #include "blocks/bptc.h"
@@ -15,6 +16,20 @@ namespace {
 // The most tries that a block has at a time.
 int most_tries(const Bc7Effort& effort) { return effort.planes + effort.search.parts + 5; }
 
+// Exchanges red and alpha of a block whose mode has both. Without a rotation, the scalar becomes red; where it stands
+// for green or blue, red changes places with what is in alpha.
+void exchange_red_and_alpha(Bc7Content& content) {
+    const bool has_planes = kBc7Modes[content.mode].second_index != 0;
+    if (has_planes && content.rotation < 2) {
+        content.rotation = 1 - content.rotation;
+        return;
+    }
+    const unsigned other = has_planes ? content.rotation - 1 : 3;
+    for (auto& subset : content.ends) {
+        for (auto& end : subset) std::swap(end[0], end[other]);
+    }
+}
+
 }  // namespace
 
 Bc7Effort bc7_effort(Effort effort) {
@@ -25,7 +40,8 @@ Bc7Effort bc7_effort(Effort effort) {
     }
 }
 
-Bc7Batch::Bc7Batch(const Bc7Effort& effort) : BlockTries(most_tries(effort)), effort_(effort) {}
+Bc7Batch::Bc7Batch(const Bc7Effort& effort, bool exchanges)
+    : BlockTries(most_tries(effort)), effort_(effort), exchanges_(exchanges) {}
 
 std::size_t Bc7Batch::memory(const Bc7Effort& effort) { return memory_of(most_tries(effort)); }
 
@@ -144,6 +160,7 @@ void Bc7Batch::write(const Try& found, std::byte* block) const {
     }
     if (found.kind < kBc7One) content.rotation = found.component[0] + 1u;
     if (found.kind >= kBc7Apart) finish_alpha(found, content);
+    if (exchanges_) exchange_red_and_alpha(content);
     write_bc7(content, block);
 }
 
