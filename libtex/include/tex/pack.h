@@ -49,8 +49,8 @@ namespace tex::inline v1 {
 // that a code of alpha counts as much as one of x. Each block is guessed in all modes: two planes, of which one holds
 // x, y or z alone; one line; two or three lines. It is fitted to those that seem best, and the least error, as decoders
 // make it, decides. fast fits up to four ways; normal 11, and improves the best two; best 39, and improves the best
-// 12. Without data, alpha is 255 in every texel. With x in alpha (bc7_rxgb), red is 255 or a little less, and only modes
-// with alpha are tried.
+// 12. Without data, alpha is 255 in every texel. With x in alpha (bc7_rxgb), red is 255, and only modes with alpha are
+// tried.
 //
 // UASTC: the error is that of BC7, without alpha, and so is the search, in the modes of RGB: two planes, of which one
 // holds x, y or z alone; one line; two or three lines. Hints say how transcoders make blocks of ETC1 and BC1 from a

@@ -19,7 +19,7 @@ struct UastcHints {
     bool flip = false, diff = false;
     std::uint8_t table[2] = {};
     std::uint8_t bias = kEtc1Unmoved;
-    // Of modes with alpha: the table of EAC, and 16 times its multiplier.
+    // Modes with alpha: the table of EAC, and 16 times its multiplier.
     std::uint8_t eac = 0x1d;
     // The modifier and the base colour, of blocks of one colour.
     std::uint8_t selector = 0, base[3] = {};

@@ -90,6 +90,10 @@ void Bc7Batch::add_lines(int block, int lane) {
         one.kind = static_cast<std::uint8_t>(number / 64);
         one.pattern = static_cast<std::uint8_t>(number % 64);
         one.error = has_alpha_ ? 0.0f : guesses_.part_error[k][lane];
+        const Bc7Kind& kind = kBc7KindTable[one.kind];
+        for (auto& subset : one.ends) {
+            for (auto& end : subset) end[3] = exchanges_ ? static_cast<std::uint8_t>((1 << kind.bits) - 1) : end[3];
+        }
         tries_.push_back(one);
     }
     if (!has_alpha_) return;
@@ -106,7 +110,11 @@ void Bc7Batch::add_lines(int block, int lane) {
 void Bc7Batch::fit(int first, int end, const Bc7Steps& steps) {
     group_.has_alpha = has_alpha_;
     for (int kind = first; kind < std::min(end, has_alpha_ ? +kBc7Kinds : +kBc7PartsAlpha); ++kind) {
-        const Bc7Kind& which = kBc7KindTable[kind];
+        Bc7Kind which = kBc7KindTable[kind];
+        if (exchanges_ && which.lowest == Bc7Lowest::own) {  // alpha, which becomes red, stays 255
+            which.lowest = Bc7Lowest::ones;
+            which.has_alpha = false;
+        }
         const bool keeps_alpha = kind >= kBc7One && !(has_alpha_ && which.has_alpha);
         fit_kind(
             kind, which.subsets, keeps_alpha ? 3 : 4, steps.indices,

@@ -12,11 +12,11 @@
 
 namespace tex::inline v1 {
 
-// Those with the least squared errors; `grey` and `alpha` are what decoders make of the block. The bias is always the
-// one that moves nothing. More effort tries more multipliers of EAC.
+// Finds those with the least squared errors; `grey` and `alpha` are what decoders make of the block. The bias is always
+// the one that moves nothing. More effort tries more multipliers of EAC.
 void find_uastc_xy_hints(Effort effort, const std::uint8_t grey[16], const std::uint8_t alpha[16], UastcHints& hints);
 
-// Of blocks of one grey.
+// The hints of a block of one grey.
 [[nodiscard]] UastcHints grey_hints(std::uint8_t grey);
 
 }  // namespace tex::inline v1

@@ -37,7 +37,7 @@ constexpr WholeBlocks kBc7Blocks = {.values = 4,
                                     .memory = bc7_memory,
                                     .rows_at_once = bc7_rows_at_once,
                                     .read_entries = read_bc7_entries};
-// As if x was in red; what is there does not count.
+// Puts x into red, and what is there does not count.
 BlockEntries read_bc7_rxgb_entries(const std::byte* block) {
     BlockEntries entries = read_bc7_entries(block);
     for (auto& code : entries.code) code[0] = std::exchange(code[3], 255);

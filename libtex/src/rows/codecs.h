@@ -23,7 +23,7 @@ class RdoTally;
 // Encodes blocks in which all components share what a block has: see kernels/encode_astc.h, encode_bc7.h and
 // encode_uastc.h.
 struct WholeBlocks {
-    // Of a texel: 2 are x and y; 3 are x, y and z; 4 are these and alpha (or, with x in alpha, 1).
+    // How many a texel has: 2 are x and y; 3 are x, y and z; 4 are these and alpha (or, with x in alpha, 1).
     int values;
     void (*encode)(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
     // Encodes one channel; null if there is no such encoder.

@@ -76,7 +76,7 @@ private:
     float front_squares_[16] = {};
 };
 
-// Of a subset.
+// The line of one subset.
 RdoLine RgbKind::line_of(const Shape& shape) {
     RdoLine line;
     const BlockEntries& block = shape.block;
