@@ -15,14 +15,14 @@ ExtraSet can_hold(Encoding encoding) {
     const FormatInfo info = format_info(format);
     const bool has_z = swizzle[2] == Component::z;
     const bool has_texels = !info.has_blocks();
-    const WholeBlocks* const whole = format_row(format).codec->whole;
+    const WholeBlocks* const whole = whole_blocks(encoding);
     const bool has_alpha = info.channels == 4 && (whole == nullptr || whole->values == 4);
     return {has_z && has_texels, has_alpha && swizzle[3] == Component::one, has_z && has_texels};
 }
 
 bool can_optimise(Encoding encoding) {
-    const Codec& codec = codec_of(encoding);
-    return codec.encode_halves != nullptr || (codec.whole != nullptr && codec.whole->optimise != nullptr);
+    const WholeBlocks* const whole = whole_blocks(encoding);
+    return codec_of(encoding).encode_halves != nullptr || (whole != nullptr && whole->optimise != nullptr);
 }
 
 float steepest_slope(Encoding encoding) {

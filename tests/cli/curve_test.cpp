@@ -86,7 +86,7 @@ TEST_F(Curve, WhatDoesNotFitIsAUsageError) {
         {"--rdo-means 0,nan", "--rdo-means: nan is not a finite number"},
         {"--rdo-means 0 --format rgba8",
          "--format: must be one of dxt5nm, bc5, bc5-snorm, eac-rg11, eac-rg11-snorm, astc-4x4, astc-5x4, astc-5x5, "
-         "astc-6x5, astc-6x6, astc-8x5, astc-8x6, astc-8x8, bc7, uastc, not 'rgba8'"},
+         "astc-6x5, astc-6x6, astc-8x5, astc-8x6, astc-8x8, bc7, uastc, uastc-rrrg, bc7-rxgb, not 'rgba8'"},
         {"--rdo-means 0 --plot n.exr", "--plot: n.exr is the input n.exr"},
     };
     for (const auto& [arguments, message] : cases) {

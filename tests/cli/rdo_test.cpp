@@ -92,7 +92,7 @@ TEST_F(RdoOption, WhatDoesNotFitIsAUsageError) {
         {"-o b.dds --rdo-mean 1 --format rgba8",
          "pack-normals: error: --rdo-mean needs --format to be one of dxt5nm, bc5, bc5-snorm, eac-rg11, "
          "eac-rg11-snorm, astc-4x4, astc-5x4, astc-5x5, astc-6x5, astc-6x6, astc-8x5, astc-8x6, astc-8x8, bc7, "
-         "uastc\n"}};
+         "uastc, uastc-rrrg, bc7-rxgb\n"}};
     for (const auto& [arguments, message] : cases) {
         const Ran ran = shell(scratch_, std::string("pack-normals n.exr ") + arguments);
         EXPECT_EQ(ran.code, 2) << arguments;

@@ -108,4 +108,28 @@ TEST_F(WrittenUastc, ReplacesTheMapsOfAModel) {
     EXPECT_EQ(number("small/b.ktx2", 20), 64u) << "the width";
 }
 
+// RRRG: x as luminance and y as alpha, which the descriptor says. glTF forbids it for normals (N801: basis_test.cpp).
+TEST_F(WrittenUastc, HoldsXAndYAlone) {
+    does(
+        "pack-normals b.png -o x.ktx2 --format uastc-rrrg --mips all; check-normals x.ktx2 --fail-on warning --require "
+        "format=uastc-rrrg; compare-normals b.png x.ktx2 --max-mean 0.6; unpack-normals x.ktx2 -o back.png --level 0; "
+        "compare-normals b.png back.png --max-mean 0.7; compare-normals b.png x.ktx2 --as bc7 --max-mean 0.9; "
+        "compare-normals b.png x.ktx2 --as astc --max-mean 0.6; preview-normals x.ktx2 -o p.png; "
+        "pack-normals x.ktx2 -o bc5.ktx2 --format bc5; compare-normals b.png bc5.ktx2 --max-mean 0.9; "
+        "mip-normals b.png -o m.ktx2 --format uastc-rrrg --roughness-out r.ktx2; check-normals m.ktx2 --fail-on "
+        "warning; "
+        "pack-normals b.png -o s.ktx2 --format uastc-rrrg --rdo-mean 0.2; compare-normals b.png s.ktx2 --max-mean "
+        "0.75");
+    EXPECT_EQ(number("x.ktx2", 44), 2u) << "Zstandard";
+    EXPECT_EQ(number("x.ktx2", number("x.ktx2", 48) + 28), 127u << 16 | 5u << 24) << "KHR_DF_CHANNEL_UASTC_RRRG";
+    EXPECT_LT(scratch_.read("s.ktx2").size(), 0.9 * static_cast<double>(scratch_.read("x.ktx2").size()));
+    const Ran ran = shell(scratch_, "compare-normals b.png x.ktx2 --as etc1");
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.err.find("x or y is in alpha, which etc1 does not have"), std::string::npos) << ran.err;
+    scratch_.write(
+        "m.gltf", R"({"asset":{"version":"2.0"},"materials":[{"normalTexture":{"index":0}}],"textures":[{"source":0}],)"
+                  R"("images":[{"uri":"b.png"}]})");
+    EXPECT_EQ(shell(scratch_, "pack-normals m.gltf -o out.gltf --format uastc-rrrg").code, 2);
+}
+
 }  // namespace tex::cli

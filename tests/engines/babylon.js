@@ -2,6 +2,10 @@
 import * as BABYLON from "@babylonjs/core";
 import "@babylonjs/loaders/glTF";
 import {drive} from "./page.js";
+import {Decoder} from "./babylon-ktx2.js";
+
+BABYLON.KhronosTextureContainer2.DefaultNumWorkers = 0;
+globalThis.KTX2DECODER = {KTX2Decoder: Decoder, MSCTranscoder: {}, WASMMemoryManager: {}};
 
 drive(side => {
   const canvas = document.body.appendChild(document.createElement("canvas"));

@@ -31,6 +31,7 @@ FILES = {
     "KTX2, rg8": "bake-normals bump.png -o rg8.ktx2 --format rg8 $bake $all",
     "KTX2, rgba8": "bake-normals bump.png -o rgba8.ktx2 --format rgba8 $bake $all",
     "KTX2, astc-4x4": "bake-normals bump.png -o astc-4x4.ktx2 --format astc-4x4 $bake $all",
+    "KTX2, uastc": "bake-normals bump.png -o uastc.ktx2 --format uastc $bake $all",
 }
 
 # The surfaces on which each engine draws a file: its own geometry, or a glTF model with or without TANGENT. The settings
@@ -57,9 +58,8 @@ GATE = {
 # Where the picture is mirrored, turned over or turned on purpose, or by the engine's own geometry.
 CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper right", "image, flipY": "lower left",
            "image, rotated by 90 degrees": "upper right"}
-# The file types that an engine is given, if not all. Babylon.js downloads its decoder of KTX2 from its own server,
-# because npm does not have it.
-TYPES = {"babylon": ("png", "exr", "dds"), "phaser": ("png",), "playcanvas": ("png", "dds", "ktx2")}
+# The file types that an engine is given, if not all. (npm does not have Babylon.js' decoder of KTX2: see babylon.js.)
+TYPES = {"phaser": ("png",), "playcanvas": ("png", "dds", "ktx2")}
 DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament")
 
 

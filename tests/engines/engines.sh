@@ -48,6 +48,7 @@ for engine in "$@"; do
     [ -n "${packages[$engine]:-}" ] || { echo "$0: no engine $engine; one of ${order[*]}"; exit 2; }
     read -ra more <<<"${packages[$engine]}"
     wanted+=("${more[@]}")
+    case $engine in babylon | playcanvas) wanted+=("${packages[three]}") ;; esac # its transcoder
 done
 missing=()
 for package in "${wanted[@]}"; do
@@ -70,18 +71,21 @@ python3 "$tests/models.py" map.png models
 mirrored=models/node-scale-1-1-1-converted-t-map.glb
 mv "$mirrored" mirrored.glb
 convert-normals mirrored.glb -o "$mirrored" --tangents mikktspace --no-sync --quiet
+basis=models/KHR-texture-basisu-t-map.glb
+mv "$basis" plain.glb
+pack-normals plain.glb -o "$basis" --format uastc --no-sync --quiet
 
 # Draws the cases.json of this folder with an engine.
 draw() {
     local engine=$1 port status=0
     echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script>' \
         '<script type="module" src="page.js"></script>' >page.html
-    cp "$tests/$engine.js" "$tests/page.js" "$place"
+    cp "$tests/$engine.js" "$tests/page.js" "$tests/babylon-ktx2.js" "$place"
     cp "$tests/start.js" .
     "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \
         --external:fs --external:path
     case $engine in
-        three) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
+        three | babylon | playcanvas) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
         cesium) ln -sf "$place/node_modules/cesium/Build/Cesium" cesium ;;
         filament) ln -sf "$place/node_modules/filament" filament ;;
     esac

@@ -2,6 +2,10 @@
 import * as pc from "playcanvas";
 import {drive} from "./page.js";
 
+// Basis Universal: the transcoder is that of three.js.
+pc.basisInitialize({glueUrl: "basis/basis_transcoder.js", wasmUrl: "basis/basis_transcoder.wasm",
+                    fallbackUrl: "basis/basis_transcoder.js"});
+
 drive(side => {
   const canvas = document.body.appendChild(document.createElement("canvas"));
   canvas.width = canvas.height = side;

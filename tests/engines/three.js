@@ -12,7 +12,7 @@ drive(side => {
   const camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 1, 20);
   camera.position.z = 10;
   const loaders = {png: new THREE.TextureLoader(), dds: new DDSLoader(), exr: new EXRLoader(),
-                   ktx2: new KTX2Loader().detectSupport(renderer)};
+                   ktx2: new KTX2Loader().setTranscoderPath("basis/").detectSupport(renderer)};
 
   return async ({map, model, place}) => {
     const scene = new THREE.Scene(), light = new THREE.DirectionalLight(0xffffff, 3);
@@ -23,7 +23,7 @@ drive(side => {
       if (!texture.mipmaps.length && texture.isCompressedTexture) throw "a texture without levels";
     }
     if (model) {
-      const {scene: root} = await new GLTFLoader().loadAsync(model);
+      const {scene: root} = await new GLTFLoader().setKTX2Loader(loaders.ktx2).loadAsync(model);
       scene.add(root);
       const mesh = root.getObjectByProperty("isMesh", true);
       if (map && map.endsWith(".png")) texture.flipY = false;  // glTF's v points down

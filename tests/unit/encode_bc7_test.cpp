@@ -207,5 +207,40 @@ TEST(EncodeBc7, FlatBlocksAndBrokenVectorsAreEncoded) {
     }
 }
 
+// Doom 3 takes x from alpha. Red is 255.
+TEST(EncodeBc7, RedAndAlphaAreExchanged) {
+    const Extent extent{131, 62};
+    const std::vector<float> texels = bumps(extent, false, 0.4f);
+    double before = 1.6;  // a limit for fast
+    for (const Effort effort : kBc7Efforts) {
+        std::vector<std::byte> blocks(level_bytes(Format::bc7_unorm, extent));
+        encode_bc7_rxgb(Format::bc7_unorm, effort, texels.data(), extent, blocks.data());
+        const int across = (extent.width + 3) / 4;
+        double sum = 0;
+        int least_red = 255;
+        for (int n = 0; n < static_cast<int>(blocks.size() / 16); ++n) {
+            std::uint8_t rgba[16][4];
+            decode_bc7(&blocks[place_of(16 * n)], rgba);
+            for (int k = 0; k < 16; ++k) {
+                const int i = n % across * 4 + k % 4, j = n / across * 4 + k / 4;
+                least_red = std::min<int>(least_red, rgba[k][0]);
+                if (i >= extent.width || j >= extent.height) continue;
+                const float* const texel = &texels[4 * place_of(j * extent.width + i)];
+                double along = 0, squared = 0;
+                for (int c = 0; c < 3; ++c) {
+                    const double v = 2.0 * rgba[k][c == 0 ? 3 : c] / 255.0 - 1.0;
+                    along += v * texel[c];
+                    squared += v * v;
+                }
+                sum += std::acos(std::min(1.0, along / std::sqrt(squared)));
+            }
+        }
+        const double angle = sum * 180.0 / 3.14159265358979 / (extent.width * extent.height);
+        EXPECT_LT(angle, before);
+        before = angle;
+        EXPECT_EQ(least_red, 255);
+    }
+}
+
 }  // namespace
 }  // namespace tex

@@ -27,7 +27,8 @@ constexpr Expected kExpected[] = {
     {Encoding::bc5_snorm, 0x2ee90aff61fdb2f5u},      {Encoding::eac_rg11, 0x31ca4401b5a74cb6u},
     {Encoding::eac_rg11_snorm, 0x2f76bd9419b50ab7u}, {Encoding::astc_4x4, 0x1b552871cffe222eu},
     {Encoding::astc_6x6, 0x77f656e77007186bu},       {Encoding::bc7, 0x4acf621ae537993au},
-    {Encoding::uastc, 0x188c386dba68ad35u}};
+    {Encoding::uastc, 0x70dfec0070338b5au},          {Encoding::uastc_rrrg, 0xae9bfa54c63b965cu},
+    {Encoding::bc7_rxgb, 0x5a7c2fc0c8376208u}};
 
 NormalMap rounded(NormalMap map) {
     for (Plane<float>* plane : {&map.x, &map.y}) {

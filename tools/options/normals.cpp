@@ -269,7 +269,9 @@ Result<void> NormalsReader::accept(const Job& job, const std::string& path, cons
 }
 
 bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const SourceInfo& info) const {
-    const bool doubts_z = info.z_doubtful && !length_in;
+    // Encoders of these leave lengths as they come.
+    const bool has_free_lengths = info.format == Format::bc7_unorm || info.format == Format::uastc_4x4_unorm;
+    const bool doubts_z = info.z_doubtful && !length_in && !has_free_lengths;
     JudgedPicture unjudged;
     unjudged.is_object_space = info.object_space && !info.z_doubtful;
     const JudgedPicture judged = this->judged(job, path, info).value_or(unjudged);

@@ -30,6 +30,10 @@ std::string known_extensions() {
     return join(names);
 }
 
+bool is_basis(std::optional<Encoding> encoding) {
+    return encoding && encoding_info(*encoding).format == Format::uastc_4x4_unorm;
+}
+
 std::string encodings_in(Container container) {
     std::vector<std::string> names;
     for (const Named<Encoding>& row : kEncodingNames) {
@@ -100,7 +104,7 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
     command
         .option("--supercompress", "zstd[:N]", "compress the levels of KTX2 files; N is from 1 (fast) to 22 (small)",
                 [this](const std::string& text) { zstd = parse_zstd(text); })
-        .preset = "zstd for uastc; else none";
+        .preset = "zstd for uastc and uastc-rrrg; else none";
     command
         .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
                 [this](const std::string& text) { quality = parse_int(text, range_of(&WriteOptions::jpeg_quality)); })
@@ -203,7 +207,7 @@ WriteOptions OutputOptions::write_options(const Job& job) const {
     WriteOptions write = job.write_options;
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
-    write.zstd = zstd.value_or(format == Encoding::uastc ? kDefaultZstd : write.zstd);
+    write.zstd = zstd.value_or(is_basis(format) ? kDefaultZstd : write.zstd);
     write.jpeg_quality = quality.value_or(write.jpeg_quality);
     return write;
 }

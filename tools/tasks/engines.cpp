@@ -37,10 +37,10 @@ constexpr Encoding kThreeEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_
 // FORMAT_MAP in KTX2Loader.js has no formats of three channels, and none of 16 bits that are normalised; of
 // supercompression it takes BasisLZ and Zstandard.
 constexpr Encoding kThreeKtx2[] = {rgba8, rgba16f, rgba32f, bc7, uastc};
-// Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal.
-constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga};
+// Babylon.js' materials take z from B; its loader of KTX2 is for Basis Universal, plain or with Zstandard.
+constexpr Container kBabylonTypes[] = {png, jpeg, webp, tga, ktx2};
 // PlayCanvas takes x from A of every texture of BC3, and z from B of others; its loader of KTX2 is for Basis Universal.
-constexpr Container kPlayCanvasTypes[] = {png, jpeg, webp, dds};
+constexpr Container kPlayCanvasTypes[] = {png, jpeg, webp, dds, ktx2};
 constexpr Encoding kPlayCanvasEncodings[] = {rgb8, rgba8, rgb16, rgba16, dxt5nm};
 // Models alone.
 constexpr Container kModelTypes[] = {png, jpeg, ktx2};
@@ -101,13 +101,14 @@ constexpr Engine kEngines[] = {
     // -Y maps x does.
     {"babylon", png, rgb8, YAxis::up, false, "",
      "Babylon.js reads x, y and z from R, G and B and builds the levels. Green points up; on its own geometry in a "
-     "left-handed scene, which is the default, materials need invertNormalMapX and invertNormalMapY.",
-     kBabylonTypes, kRgbCodes},
+     "left-handed scene, which is the default, materials need invertNormalMapX and invertNormalMapY. KTX2 of UASTC is "
+     "for models of glTF; on its own geometry it lies upside down.",
+     kBabylonTypes, kRgbCodes, RoughnessUse::any, kBasisEncodings, false},
     // Drawn by tests/engines.
     {"playcanvas", png, rgb8, YAxis::up, false, "",
      "PlayCanvas reads x, y and z of PNG from R, G and B, builds the levels and expects green up. With --format dxt5nm "
-     "it reads DDS, too.",
-     kPlayCanvasTypes, kPlayCanvasEncodings},
+     "it reads DDS, too, and with --format uastc KTX2.",
+     kPlayCanvasTypes, kPlayCanvasEncodings, RoughnessUse::any, kBasisEncodings, false},
     // Drawn by tests/engines, models alone: they read what the core of glTF allows.
     {"cesium", png, rgb8, YAxis::up, false, "",
      "Cesium reads the pictures of glTF models, x, y and z from R, G and B with green up. It needs TANGENT in models "

@@ -230,7 +230,9 @@ enum class Encoding {
     rgba16f,
     rgba32f,
     bc7,
-    uastc
+    uastc,
+    uastc_rrrg,
+    bc7_rxgb
 };
 
 inline constexpr Named<Encoding> kEncodingNames[] = {
@@ -260,6 +262,8 @@ inline constexpr Named<Encoding> kEncodingNames[] = {
     {Encoding::rgba32f, "rgba32f", "x, y, z and A = 1 as 32-bit floats"},
     {Encoding::bc7, "bc7", "BC7, x, y, z and A = 1"},
     {Encoding::uastc, "uastc", "UASTC of Basis Universal, x, y, z and A = 1: glTF"},
+    {Encoding::uastc_rrrg, "uastc-rrrg", "UASTC of Basis Universal, R = G = B = x, A = y: not glTF"},
+    {Encoding::bc7_rxgb, "bc7-rxgb", "BC7, R = 1, G = y, B = z, A = x: Doom 3"},
 };
 
 struct EncodingInfo {
@@ -274,8 +278,7 @@ struct EncodingInfo {
 // hold any: alpha.
 [[nodiscard]] TEX_API ExtraSet can_hold(Encoding encoding);
 
-// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks of x and y
-// alone, so not bc7 and uastc.
+// Whether pack() can choose blocks of this encoding that compress better (RdoOptions): if it has blocks.
 [[nodiscard]] TEX_API bool can_optimise(Encoding encoding);
 
 // The slope from which on all slopes are stored alike. Without z: the component rounds to 1, so that the surface

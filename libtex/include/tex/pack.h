@@ -49,11 +49,13 @@ namespace tex::inline v1 {
 // that a code of alpha counts as much as one of x. Each block is guessed in all modes: two planes, of which one holds
 // x, y or z alone; one line; two or three lines. It is fitted to those that seem best, and the least error, as decoders
 // make it, decides. fast fits up to four ways; normal 11, and improves the best two; best 39, and improves the best
-// 12. Without data, alpha is 255 in every texel.
+// 12. Without data, alpha is 255 in every texel. With x in alpha (bc7_rxgb), red is 255, and only modes with alpha are
+// tried.
 //
 // UASTC: the error is that of BC7, without alpha, and so is the search, in the modes of RGB: two planes, of which one
 // holds x, y or z alone; one line; two or three lines. Hints say how transcoders make blocks of ETC1 and BC1 from a
-// block: those are chosen whose blocks have the least error of direction.
+// block: those are chosen whose blocks have the least error of direction. Of x and y alone (uastc_rrrg), the error is
+// that of the normal that follows from both, in the modes of luminance and alpha: two planes; one line; two lines.
 enum class Effort { fast, normal, best };
 
 inline constexpr Named<Effort> kEffortNames[] = {
@@ -94,7 +96,7 @@ inline constexpr Named<Metric> kMetricNames[] = {
 //
 // The promise concerns the angles between the normals of the source and those of the blocks, as compare() measures
 // them: on both sides, z = sqrt(1 - x^2 - y^2), or 0 where x^2 + y^2 is above 1, and then the vector is made unit. In
-// BC7 and UASTC, which hold z, they are between the directions of all three components. Where alpha of BC7 holds data,
+// BC7 and UASTC of x, y and z, they are between the directions of all three components. Where alpha of BC7 holds data,
 // texels are vectors of four components, the last one twice alpha, and their angles those that have chords of this
 // length: an error of one code of alpha, or of x, is 0.45 degrees.
 //

@@ -12,8 +12,6 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr int kChannels = 3;
-
 // The stored values of each range of colours in the order of what they mean.
 struct UastcOrders {
     std::uint8_t stored[kAstcRanges][256] = {};
@@ -57,7 +55,7 @@ void turn(UastcContent& content, const UastcMode& mode, const UastcPattern& patt
         if (pattern.subset[k] == subset)
             weights[k] = static_cast<std::uint8_t>((1 << mode.weight_bits) - 1 - weights[k]);
     }
-    for (unsigned c = 0; c < kChannels; ++c) {
+    for (unsigned c = 0; c < mode.channels; ++c) {
         const int its_plane = mode.planes == 2 && c == content.second_channel ? 1 : 0;
         if (its_plane == plane) std::swap(content.ends[subset][0][c], content.ends[subset][1][c]);
     }
@@ -81,14 +79,14 @@ void put_ends(UastcBits& to, int range, const std::uint8_t* values, int count) {
 void put_solid(UastcBits& to, const UastcContent& content) {
     const UastcHints& hints = content.hints;
     for (const std::uint8_t code : content.ends[0][0]) to.put(code, 8);
-    to.put(255, 8);
+    to.put(content.alpha, 8);
     to.put(hints.diff ? 1 : 0, 1);
     to.put(hints.table[0], 3);
     to.put(hints.selector, 2);
     for (const std::uint8_t code : hints.base) to.put(code, 5);
 }
 
-void put_hints(UastcBits& to, const UastcHints& hints) {
+void put_hints(UastcBits& to, const UastcMode& mode, const UastcHints& hints) {
     to.put(hints.bc1_ends ? 1 : 0, 1);
     to.put(hints.bc1_weights ? 1 : 0, 1);
     to.put(hints.flip ? 1 : 0, 1);
@@ -96,6 +94,7 @@ void put_hints(UastcBits& to, const UastcHints& hints) {
     to.put(hints.table[0], 3);
     to.put(hints.table[1], 3);
     to.put(hints.bias, 5);
+    if (mode.channels != 3) to.put(hints.eac, 8);
 }
 
 }  // namespace
@@ -106,7 +105,7 @@ void uastc_texels(const UastcContent& content, std::uint8_t codes[3][16]) {
     const UastcMode& mode = kUastcModeTable[content.mode];
     const UastcPattern& pattern = *uastc_pattern(content.mode, content.pattern);
     const std::uint8_t* const meaning = kAstcMeanings.weight[kUastcWeightRanges[mode.weight_bits]];
-    for (unsigned c = 0; c < kChannels; ++c) {
+    for (unsigned c = 0; c < mode.channels; ++c) {
         const std::uint8_t* const weights = content.weights[mode.planes == 2 && c == content.second_channel ? 1 : 0];
         int begin[3] = {}, step[3] = {};
         for (int s = 0; s < mode.subsets; ++s) {
@@ -134,13 +133,13 @@ void write_uastc(const UastcContent& given, std::byte* block) {
     for (int subset = 0; subset < mode.subsets; ++subset) {
         for (int plane = 0; plane < mode.planes; ++plane) turn(content, mode, pattern, subset, plane);
     }
-    put_hints(to, content.hints);
+    put_hints(to, mode, content.hints);
     if (mode.subsets > 1) to.put(content.pattern, mode.subsets == 2 ? 5 : 4);
-    if (mode.planes > 1) to.put(content.second_channel, 2);
+    if (mode.planes > 1 && mode.channels == 3) to.put(content.second_channel, 2);
     std::uint8_t values[kUastcTexels + 2];
     int count = 0;
     for (int subset = 0; subset < mode.subsets; ++subset) {
-        for (int c = 0; c < kChannels; ++c) {
+        for (int c = 0; c < mode.channels; ++c) {
             for (int e = 0; e < 2; ++e) values[count++] = orders().stored[mode.color_range][content.ends[subset][e][c]];
         }
     }

@@ -100,7 +100,7 @@ using namespace tex;
 int32_t tex_encode_prepare(const tex_encode_options* options) {
     PackOptions o;
     if (const int32_t error = encode_options(options, o); error != TEX_OK) return error;
-    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    const WholeBlocks* const codec = whole_blocks(o.encoding);
     if (codec == nullptr) return TEX_OK;
     try {
         codec->prepare(encoding_info(o.encoding).format, o.effort);
@@ -113,7 +113,7 @@ int32_t tex_encode_prepare(const tex_encode_options* options) {
 size_t tex_encode_size(int32_t width, const tex_encode_options* options) {
     PackOptions o;
     if (!is_extent(width, 1) || encode_options(options, o) != TEX_OK) return 0;
-    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    const WholeBlocks* const codec = whole_blocks(o.encoding);
     return codec != nullptr ? scratch_of(*codec, o, width) : 0;
 }
 
@@ -126,7 +126,7 @@ int32_t tex_encode(const tex_map* map, const tex_encode_options* options, int32_
     if (!is_map(map, reads_z(o.encoding)) || bytes == nullptr || !are_blocks(first, end, map->height, block) ||
         pitch < level_bytes(format, {map->width, 1}))
         return TEX_BAD_ARGUMENT;
-    const WholeBlocks* const codec = codec_of(o.encoding).whole;
+    const WholeBlocks* const codec = whole_blocks(o.encoding);
     if (codec != nullptr && !codec->is_prepared(format, o.effort)) return TEX_NOT_PREPARED;
     auto* const out = static_cast<std::byte*>(bytes);
     if (codec != nullptr) {

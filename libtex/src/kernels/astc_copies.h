@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// astc_copies.h: estimates for earlier blocks of ASTC what it costs a block to copy them (rows/rdo_astc_sources.h).
+// astc_copies.h: estimates for earlier blocks what it costs a block of ASTC, BC7 or UASTC to copy them
+// (rows/rdo_copies.h).
 
 #pragma once
 

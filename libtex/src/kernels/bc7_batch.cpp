@@ -3,6 +3,7 @@
 #include "kernels/bc7_batch.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "blocks/bc7_modes.h"
 #include "blocks/bptc.h"
@@ -15,6 +16,20 @@ namespace {
 // The most tries that a block has at a time.
 int most_tries(const Bc7Effort& effort) { return effort.planes + effort.search.parts + 5; }
 
+// Exchanges red and alpha of a block whose mode has both. Without a rotation, the scalar becomes red; where it stands
+// for green or blue, red changes places with what is in alpha.
+void exchange_red_and_alpha(Bc7Content& content) {
+    const bool has_planes = kBc7Modes[content.mode].second_index != 0;
+    if (has_planes && content.rotation < 2) {
+        content.rotation = 1 - content.rotation;
+        return;
+    }
+    const unsigned other = has_planes ? content.rotation - 1 : 3;
+    for (auto& subset : content.ends) {
+        for (auto& end : subset) std::swap(end[0], end[other]);
+    }
+}
+
 }  // namespace
 
 Bc7Effort bc7_effort(Effort effort) {
@@ -25,7 +40,8 @@ Bc7Effort bc7_effort(Effort effort) {
     }
 }
 
-Bc7Batch::Bc7Batch(const Bc7Effort& effort) : BlockTries(most_tries(effort)), effort_(effort) {}
+Bc7Batch::Bc7Batch(const Bc7Effort& effort, bool exchanges)
+    : BlockTries(most_tries(effort)), effort_(effort), exchanges_(exchanges) {}
 
 std::size_t Bc7Batch::memory(const Bc7Effort& effort) { return memory_of(most_tries(effort)); }
 
@@ -74,6 +90,10 @@ void Bc7Batch::add_lines(int block, int lane) {
         one.kind = static_cast<std::uint8_t>(number / 64);
         one.pattern = static_cast<std::uint8_t>(number % 64);
         one.error = has_alpha_ ? 0.0f : guesses_.part_error[k][lane];
+        const Bc7Kind& kind = kBc7KindTable[one.kind];
+        for (auto& subset : one.ends) {
+            for (auto& end : subset) end[3] = exchanges_ ? static_cast<std::uint8_t>((1 << kind.bits) - 1) : end[3];
+        }
         tries_.push_back(one);
     }
     if (!has_alpha_) return;
@@ -90,7 +110,11 @@ void Bc7Batch::add_lines(int block, int lane) {
 void Bc7Batch::fit(int first, int end, const Bc7Steps& steps) {
     group_.has_alpha = has_alpha_;
     for (int kind = first; kind < std::min(end, has_alpha_ ? +kBc7Kinds : +kBc7PartsAlpha); ++kind) {
-        const Bc7Kind& which = kBc7KindTable[kind];
+        Bc7Kind which = kBc7KindTable[kind];
+        if (exchanges_ && which.lowest == Bc7Lowest::own) {  // alpha, which becomes red, stays 255
+            which.lowest = Bc7Lowest::ones;
+            which.has_alpha = false;
+        }
         const bool keeps_alpha = kind >= kBc7One && !(has_alpha_ && which.has_alpha);
         fit_kind(
             kind, which.subsets, keeps_alpha ? 3 : 4, steps.indices,
@@ -144,6 +168,7 @@ void Bc7Batch::write(const Try& found, std::byte* block) const {
     }
     if (found.kind < kBc7One) content.rotation = found.component[0] + 1u;
     if (found.kind >= kBc7Apart) finish_alpha(found, content);
+    if (exchanges_) exchange_red_and_alpha(content);
     write_bc7(content, block);
 }
 

@@ -28,8 +28,8 @@ struct Bc7Effort {
 
 class Bc7Batch : public BlockTries<4> {
 public:
-    // Takes memory.
-    explicit Bc7Batch(const Bc7Effort& effort);
+    // Takes memory. `exchanges`: blocks are written with alpha in red and red in alpha.
+    explicit Bc7Batch(const Bc7Effort& effort, bool exchanges = false);
     [[nodiscard]] static std::size_t memory(const Bc7Effort& effort);
 
     // Encodes the first `count` blocks, whose fourth channel is alpha from 0 to 1; block k goes to blocks[k].
@@ -44,6 +44,7 @@ private:
     void write(const Try& found, std::byte* block) const;
 
     const Bc7Effort effort_;
+    const bool exchanges_;
     bool has_alpha_ = false;
     float apart_[kMost][3];  // the error of alpha in a plane of its own
     Bc7Guesses guesses_;

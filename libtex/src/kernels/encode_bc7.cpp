@@ -38,11 +38,14 @@ std::size_t bc7_memory(Format, Effort effort, int, int) {
     return LentMemory::taken_by(sizeof(Bc7Batch)) + Bc7Batch::memory(bc7_effort(effort)) + LentMemory::kStep;
 }
 
-void encode_bc7(Format, Effort effort, const float* texels, Extent extent, std::byte* blocks) {
+namespace {
+
+// `exchanges`: red and alpha, which only modes with alpha have.
+void encode_bc7_blocks(Effort effort, bool exchanges, const float* texels, Extent extent, std::byte* blocks) {
     const Bc7Source source = {texels, extent};
     WorkingVector<Bc7Batch> batches;  // exactly one
     batches.reserve(1);
-    batches.emplace_back(bc7_effort(effort));
+    batches.emplace_back(bc7_effort(effort), exchanges);
     Bc7Batch& batch = batches.front();
     std::byte* places[Bc7Batch::kMost];
     // Blocks with data in alpha apart from the others, so that a block depends on no other one.
@@ -51,7 +54,7 @@ void encode_bc7(Format, Effort effort, const float* texels, Extent extent, std::
         std::byte* place = blocks;
         for (int top = 0; top < extent.height; top += kEdge) {
             for (int left = 0; left < extent.width; left += kEdge, place += kBc7BlockBytes) {
-                if (source.has_alpha(left, top) != has_alpha) continue;
+                if ((exchanges || source.has_alpha(left, top)) != has_alpha) continue;
                 float(*const to)[4] = batch.texels(count);
                 for (int k = 0; k < kEdge * kEdge; ++k) std::copy_n(source.texel(left, top, k), 4, to[k]);
                 places[count++] = place;
@@ -62,6 +65,16 @@ void encode_bc7(Format, Effort effort, const float* texels, Extent extent, std::
         }
         if (count > 0) batch.encode(count, has_alpha, places);
     }
+}
+
+}  // namespace
+
+void encode_bc7(Format, Effort effort, const float* texels, Extent extent, std::byte* blocks) {
+    encode_bc7_blocks(effort, false, texels, extent, blocks);
+}
+
+void encode_bc7_rxgb(Format, Effort effort, const float* texels, Extent extent, std::byte* blocks) {
+    encode_bc7_blocks(effort, true, texels, extent, blocks);
 }
 
 }  // namespace tex::inline v1

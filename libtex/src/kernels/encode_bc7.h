@@ -26,6 +26,9 @@ namespace tex::inline v1 {
 // Without lent memory, which takes bc7_memory(), it comes from the heap.
 void encode_bc7(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
 
+// Blocks of which red and alpha are exchanged: A = x, G = y, B = z, and the fourth value of a texel in red.
+void encode_bc7_rxgb(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
+
 [[nodiscard]] std::size_t bc7_memory(Format format, Effort effort, int width, int rows);
 // So many rows of blocks are encoded together best.
 [[nodiscard]] int bc7_rows_at_once(Format format, int width);

@@ -18,15 +18,21 @@ int most_tries(const UastcEffort& effort) { return effort.planes + effort.search
 
 UastcEffort uastc_effort(Effort effort) {
     switch (effort) {
-        case Effort::fast: return {effort, 1, 1.0f, {2, 30, false, 0}, 1, 0, false, {2, 0}};
-        case Effort::normal: return {effort, 2, 1.5f, {3, 30, true, 0}, 2, 2, false, {3, 3}};
-        default: return {effort, 2, 4.0f, {kUastcMostParts, 30, true, 3}, 10, 12, true, {3, 6}};
+        case Effort::fast: return {effort, 1, 1.0f, {2, 30, false, 0}, 1, 0, false, {2, 0}, 1};
+        case Effort::normal: return {effort, 2, 1.5f, {3, 30, true, 0}, 2, 2, false, {3, 3}, 2};
+        default: return {effort, 2, 4.0f, {kUastcMostParts, 30, true, 3}, 10, 12, true, {3, 6}, 3};
     }
 }
 
-UastcBatch::UastcBatch(const UastcEffort& effort) : BlockTries(most_tries(effort)), effort_(effort) {}
+UastcBatch::UastcBatch(const UastcEffort& effort) : BlockTries(most_tries(effort)), effort_(effort) {
+    ranked_.reserve(at(kMost * effort.finals));
+    chosen_.resize(at(kMost));
+}
 
-std::size_t UastcBatch::memory(const UastcEffort& effort) { return memory_of(most_tries(effort)); }
+std::size_t UastcBatch::memory(const UastcEffort& effort) {
+    return memory_of(most_tries(effort)) + LentMemory::taken_by(at(kMost * effort.finals) * sizeof(Try)) +
+           LentMemory::taken_by(at(kMost) * sizeof(Chosen));
+}
 
 // Adds what seems worth a fit; lines with the errors that they are guessed to have.
 void UastcBatch::add_tries(int block, int lane) {
@@ -104,7 +110,7 @@ bool UastcBatch::write_solid(int block, std::byte* to) {
 }
 
 // What BC1 may take from a block.
-void UastcBatch::gather_hints(const UastcContent& content, int lane) {
+void UastcBatch::gather_ends(const UastcContent& content, int lane) {
     const UastcMode& mode = kUastcModeTable[content.mode];
     hints_.is_one[lane] = mode.subsets == 1 ? 1.0f : 0.0f;
     for (int e = 0; e < 2; ++e) {
@@ -121,23 +127,63 @@ void UastcBatch::gather_hints(const UastcContent& content, int lane) {
     }
 }
 
+// What a try holds, and in this lane what transcoders start from.
+UastcContent UastcBatch::gather(const Try& found, int lane) {
+    const UastcContent content = content_of(found);
+    std::uint8_t codes[3][16];
+    uastc_texels(content, codes);
+    gather_ends(content, lane);
+    for (int k = 0; k < 16; ++k) {
+        for (int c = 0; c < 3; ++c) {
+            hints_.value[k][c][lane] = texels_[at(found.block)].value[k][c];
+            hints_.code[k][c][lane] = codes[c][k];
+        }
+    }
+    return content;
+}
+
+// Takes, of the improved tries of each block, that whose error is least with a little of that as BC1, and its indices.
+void UastcBatch::choose(int count) {
+    constexpr float kAsBc1 = 0.05f, kWorse = 1.3f;  // no try whose own error is so many times the least one
+    ranked_.clear();
+    for (const Try& found : tries_) ranked_.push_back(found);
+    for (int block = 0; block < count; ++block) chosen_[at(block)].cost = kBc7None;
+    for (int rank = 0; rank < effort_.finals; ++rank) {
+        tries_.clear();
+        int block = -1, its_rank = 0;
+        for (const Try& found : ranked_) {
+            its_rank = found.block == block ? its_rank + 1 : 0;
+            block = found.block;
+            float& first = chosen_[at(block)].first;
+            if (its_rank == 0) first = found.error;
+            if (its_rank == rank && found.error <= kWorse * first) tries_.push_back(found);
+        }
+        fit(kUastcPlanes, kUastcKinds, {false, 0, false, true});
+        const auto tried = static_cast<int>(tries_.size());
+        for (int n = 0; n < tried; n += lanes_) {
+            for (int lane = 0; lane < lanes_; ++lane) gather(tries_[at(std::min(n + lane, tried - 1))], lane);
+            find_bc1_hints(hints_);
+            for (int lane = 0; lane < std::min(lanes_, tried - n); ++lane) {
+                const Try& found = tries_[at(n + lane)];
+                Chosen& chosen = chosen_[at(found.block)];
+                const float cost = found.error + kAsBc1 * 2.0f * (16.0f - hints_.bc1_cosines[lane]);
+                if (cost < chosen.cost) chosen = {found, indices_[at(found.block)], chosen.first, cost};
+            }
+        }
+    }
+    tries_.clear();
+    for (int block = 0; block < count; ++block) {
+        tries_.push_back(chosen_[at(block)].found);
+        indices_[at(block)] = chosen_[at(block)].indices;
+    }
+}
+
 // Finds hints for what decoders make of each block, and writes it.
 void UastcBatch::write(int count, std::byte* blocks) {
     for (int first = 0; first < count; first += lanes_) {
         UastcContent contents[kBc7Lanes];
-        for (int lane = 0; lane < lanes_; ++lane) {
-            const int block = std::min(first + lane, count - 1);
-            contents[lane] = content_of(tries_[at(block)]);
-            std::uint8_t codes[3][16];
-            uastc_texels(contents[lane], codes);
-            gather_hints(contents[lane], lane);
-            for (int k = 0; k < 16; ++k) {
-                for (int c = 0; c < 3; ++c) {
-                    hints_.value[k][c][lane] = texels_[at(block)].value[k][c];
-                    hints_.code[k][c][lane] = codes[c][k];
-                }
-            }
-        }
+        for (int lane = 0; lane < lanes_; ++lane)
+            contents[lane] = gather(tries_[at(std::min(first + lane, count - 1))], lane);
         find_etc1_hints(effort_.effort, hints_);
         find_bc1_hints(hints_);
         for (int lane = 0; lane < std::min(lanes_, count - first); ++lane) {
@@ -171,9 +217,12 @@ void UastcBatch::encode(int count, std::byte* blocks) {
     keep(effort_.kept);
     if (effort_.rounds > 0) {
         fit(kUastcPlanes, kUastcKinds, {false, effort_.rounds, effort_.pairs, false, effort_.solves[1]});
-        keep(1);
+        keep(effort_.finals);
     }
-    fit(is_final ? kUastcOne : kUastcPlanes, kUastcKinds, {false, 0, false, true});
+    if (effort_.finals > 1)
+        choose(count);
+    else
+        fit(is_final ? kUastcOne : kUastcPlanes, kUastcKinds, {false, 0, false, true});
     write(count, blocks);
 }
 

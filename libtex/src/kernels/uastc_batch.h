@@ -25,6 +25,7 @@ struct UastcEffort {
     int rounds;
     bool pairs;
     int solves[2];  // of two planes: when they are found, and when they are improved
+    int finals;     // so many of the improved ones are compared as BC1, too
 };
 [[nodiscard]] UastcEffort uastc_effort(Effort effort);
 
@@ -41,11 +42,21 @@ private:
     void add_tries(int block, int lane);
     void fit(int first, int end, const Bc7Steps& steps);
     [[nodiscard]] UastcContent content_of(const Try& found) const;
-    void gather_hints(const UastcContent& content, int lane);
+    UastcContent gather(const Try& found, int lane);
+    void gather_ends(const UastcContent& content, int lane);
+    void choose(int count);
     void write(int count, std::byte* blocks);
     bool write_solid(int block, std::byte* to);
 
+    struct Chosen {
+        Try found;
+        Indices indices;
+        float first, cost;  // the least error; with that as BC1, what is chosen
+    };
+
     const UastcEffort effort_;
+    WorkingVector<Try> ranked_;  // the improved ones of each block, the best one first
+    WorkingVector<Chosen> chosen_;
     UastcGuesses guesses_;
     UastcHintGroup hints_;
 };

@@ -20,7 +20,8 @@ struct UastcHintGroup {
     alignas(64) float code[16][3][kBc7Lanes];   // of the decoded block, 0 to 255
     // Whether the block has one subset; then its endpoints, and its weights in the first plane as steps of four.
     alignas(64) float is_one[kBc7Lanes], end[2][3][kBc7Lanes], step[16][kBc7Lanes];
-    alignas(64) float bc1[kBc7Lanes];  // 2: endpoints and weights as they are; 1: these weights; 0: neither
+    alignas(64) float bc1[kBc7Lanes];          // 2: endpoints and weights as they are; 1: these weights; 0: neither
+    alignas(64) float bc1_cosines[kBc7Lanes];  // the sum over the texels, with this one
     alignas(64) float flip[kBc7Lanes], diff[kBc7Lanes], table[2][kBc7Lanes], bias[kBc7Lanes];
 };
 

@@ -191,8 +191,10 @@ void FindBc1Hints(UastcHintGroup& group) {
     const FloatVec to_weights = trial.fitted_to_weights();
     way = hn::IfThenElse(hn::Gt(to_weights, best), Bc7Number(1.0f), way);
     best = hn::Max(best, to_weights);
-    way = hn::IfThenElse(hn::Ge(trial.fitted_to_texels(), best), zero, way);
+    const FloatVec to_texels = trial.fitted_to_texels();
+    way = hn::IfThenElse(hn::Ge(to_texels, best), zero, way);
     const FloatMask is_line = hn::Gt(hn::Load(d, group.is_one), zero);
+    hn::Store(hn::IfThenElse(is_line, hn::Max(best, to_texels), to_texels), d, group.bc1_cosines);
     hn::Store(hn::IfThenElse(is_line, way, zero), d, group.bc1);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // uastc_kinds.h: the ways in which the encoder uses the modes of UASTC. Modes 1 and 9 to 17 are not tried: mode 5 has
-// more levels than mode 1, and the others store alpha.
+// more levels than mode 1, and the others store alpha (uastc_xy_fit.h).
 
 #pragma once
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include <tex/tex_c.h>
 
@@ -36,6 +37,21 @@ constexpr WholeBlocks kBc7Blocks = {.values = 4,
                                     .memory = bc7_memory,
                                     .rows_at_once = bc7_rows_at_once,
                                     .read_entries = read_bc7_entries};
+// Puts x into red, and what is there does not count.
+BlockEntries read_bc7_rxgb_entries(const std::byte* block) {
+    BlockEntries entries = read_bc7_entries(block);
+    for (auto& code : entries.code) code[0] = std::exchange(code[3], 255);
+    return entries;
+}
+constexpr WholeBlocks kBc7RxgbBlocks = {.values = 4,
+                                        .encode = encode_bc7_rxgb,
+                                        .encode_values = nullptr,
+                                        .optimise = optimise_rgb_band,
+                                        .prepare = [](Format, Effort) {},
+                                        .is_prepared = [](Format, Effort) { return true; },
+                                        .memory = bc7_memory,
+                                        .rows_at_once = bc7_rows_at_once,
+                                        .read_entries = read_bc7_rxgb_entries};
 constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .encode = encode_uastc,
                                       .encode_values = nullptr,
@@ -45,6 +61,16 @@ constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .memory = uastc_memory,
                                       .rows_at_once = uastc_rows_at_once,
                                       .read_entries = read_uastc_entries};
+
+constexpr WholeBlocks kUastcXyBlocks = {.values = 2,
+                                        .encode = encode_uastc_xy,
+                                        .encode_values = nullptr,
+                                        .optimise = optimise_rgb_band,
+                                        .prepare = [](Format, Effort) {},
+                                        .is_prepared = [](Format, Effort) { return true; },
+                                        .memory = uastc_xy_memory,
+                                        .rows_at_once = uastc_rows_at_once,
+                                        .read_entries = read_uastc_entries};
 
 void decode_row_of_texels(Format format, const std::byte* texels, int width, const ChannelRows& rows, std::ptrdiff_t) {
     decode_texels(format, texels, width, rows);
@@ -140,11 +166,13 @@ constexpr FormatRow kFormats[] = {
 };
 
 constexpr Swizzle kXyz1 = {Component::x, Component::y, Component::z, Component::one};
+constexpr Swizzle k1yzx = {Component::one, Component::y, Component::z, Component::x};
 
 struct EncodingRow {
     Encoding encoding;
     int number_in_c;
     EncodingInfo info;
+    const WholeBlocks* whole = nullptr;  // where its codec writes another layout
 };
 
 // In the order of Encoding.
@@ -175,6 +203,8 @@ constexpr EncodingRow kEncodings[] = {
     {Encoding::rgba32f, TEX_ENCODING_RGBA32F, {rgba32_float, kXyz1}},
     {Encoding::bc7, TEX_ENCODING_BC7, {bc7_unorm, kXyz1}},
     {Encoding::uastc, TEX_ENCODING_UASTC, {uastc_4x4_unorm, kXyz1}},
+    {Encoding::uastc_rrrg, TEX_ENCODING_UASTC_RRRG, {uastc_4x4_unorm, kSwizzleXxxy}, &kUastcXyBlocks},
+    {Encoding::bc7_rxgb, TEX_ENCODING_BC7_RXGB, {bc7_unorm, k1yzx}, &kBc7RxgbBlocks},
 };
 
 static_assert([] {
@@ -199,6 +229,11 @@ FormatInfo format_info(Format format) {
 EncodingInfo encoding_info(Encoding encoding) {
     const auto at = static_cast<std::size_t>(encoding);
     return at < std::size(kEncodings) ? kEncodings[at].info : EncodingInfo{};
+}
+
+const WholeBlocks* whole_blocks(Encoding encoding) {
+    const WholeBlocks* const own = kEncodings[static_cast<std::size_t>(encoding)].whole;
+    return own != nullptr ? own : codec_of(encoding).whole;
 }
 
 std::optional<Format> format_of(SampleKind sample, int bits, int channels) {

@@ -23,7 +23,8 @@ class RdoTally;
 // Encodes blocks in which all components share what a block has: see kernels/encode_astc.h, encode_bc7.h and
 // encode_uastc.h.
 struct WholeBlocks {
-    int values;  // of a texel: 2 are x and y; 3 are x, y and z; 4 are these and alpha
+    // How many a texel has: 2 are x and y; 3 are x, y and z; 4 are these and alpha (or, with x in alpha, 1).
+    int values;
     void (*encode)(Format format, Effort effort, const float* texels, Extent extent, std::byte* blocks);
     // Encodes one channel; null if there is no such encoder.
     void (*encode_values)(Format format, Effort effort, const float* values, Extent extent, std::byte* blocks);
@@ -47,9 +48,9 @@ struct Codec {
     // half, it is the first one.
     void (*encode_halves)(const BlockRow& row, Effort effort, std::byte* blocks) = nullptr;
     HalfKind halves[2] = {};
-    const WholeBlocks* whole = nullptr;
-    bool is_written = true;  // in files
-    bool has_grid = true;    // the borders of blocks show, and levels should consist of whole ones
+    const WholeBlocks* whole = nullptr;  // unless the encoding has its own: whole_blocks()
+    bool is_written = true;              // in files
+    bool has_grid = true;                // the borders of blocks show, and levels should consist of whole ones
     // The likeliest layout of normals, for files that do not state it, if it does not follow from the channels.
     std::optional<Swizzle> swizzle = {};
 };
@@ -75,6 +76,8 @@ struct FormatRow {
 [[nodiscard]] inline const Codec& codec_of(Encoding encoding) {
     return *format_row(encoding_info(encoding).format).codec;
 }
+// How blocks of this encoding are written; null if they have halves, or if it has none.
+[[nodiscard]] const WholeBlocks* whole_blocks(Encoding encoding);
 
 // The format that a number identifies, and whether the number declares sRGB; nullopt for unknown numbers.
 struct MarkedFormat {

@@ -90,7 +90,7 @@ float value_of(const PackChannel& channel, int i) {
 // other arguments.
 void pack_whole_blocks(const WholeBlocks& codec, const Rows& rows, const PackOptions& options, int j, int count,
                        std::byte* out, const RdoBands& bands, RdoTally* tally, std::byte* plain) {
-    const Format format = encoding_info(options.encoding).format;
+    const auto [format, swizzle] = encoding_info(options.encoding);
     const int width = rows.extent().width;
     std::vector<float> texels(size(codec.values) * size(width) * size(count));
     float* to = texels.data();
@@ -99,6 +99,7 @@ void pack_whole_blocks(const WholeBlocks& codec, const Rows& rows, const PackOpt
         PackChannel from[4];
         rows.channels(k, from, scratch);
         if (codec.values == 2) from[1] = from[3];  // y
+        if (swizzle[3] == Component::x) std::swap(from[0], from[3]);
         for (int i = 0; i < width; ++i) {
             for (int c = 0; c < codec.values; ++c) *to++ = value_of(from[c], i);
         }
@@ -158,7 +159,7 @@ void pack_rows(const NormalMap& map, ExtraSet extras, int height, const PackOpti
     if (info.has_blocks()) {
         const std::size_t pitch = level_bytes(format, {rows.extent().width, 1});
         const int block = info.block.height;
-        if (const WholeBlocks* const codec = codec_of(options.encoding).whole; codec != nullptr) {
+        if (const WholeBlocks* const codec = whole_blocks(options.encoding); codec != nullptr) {
             const std::size_t offset = size(begin / block) * pitch;
             return pack_whole_blocks(*codec, rows, options, begin, end - begin, out + offset, bands, tally,
                                      plain == nullptr ? nullptr : plain + offset);

@@ -66,25 +66,13 @@ void decode_astc_normals(Extent block, const std::byte* bytes, RdoAstcTexels& te
 float astc_chord_sum(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded) {
     float chords[kAstcMostPlanned];
     astc_chords(block, texels, decoded, chords);
-    float sum = 0.0f;
-    for (int k = 0; k < texels; ++k) {
-        if (chords[k] > block.most[k]) return kTooLong;
-        sum += block.inside[k] * chords[k];
-    }
-    return sum;
+    return chord_sum_of(chords, block.most, block.inside, texels);
 }
 
 RdoAngles astc_angles(const RdoAstcBlock& block, int texels, const RdoAstcTexels& decoded) {
     float chords[kAstcMostPlanned];
     astc_chords(block, texels, decoded, chords);
-    RdoAngles angles;
-    for (int k = 0; k < texels; ++k) {
-        if (block.inside[k] == 0.0f) continue;
-        const double angle = degrees_of_chord(chords[k]);
-        angles.sum += angle;
-        if (chords[k] > block.plain[k]) angles.most_raised = std::max(angles.most_raised, angle);
-    }
-    return angles;
+    return angles_of(chords, block.plain, block.inside, texels);
 }
 
 std::vector<double> astc_growths(const RdoAstcBand& band, std::size_t index, const RdoAstcTexels& decoded) {

@@ -25,8 +25,6 @@ struct RdoAstcBlock {
 };
 
 struct RdoAstcBand : RdoBlocks {
-    Extent block{4, 4};
-    int window = 0;  // bytes
     int across = 0;  // blocks
     RdoParts places;
     std::vector<RdoAstcBlock> blocks;

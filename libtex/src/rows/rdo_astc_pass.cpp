@@ -3,163 +3,122 @@
 #include "rows/rdo_astc_pass.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
+#include <optional>
 
+#include "blocks/astc_decode.h"
+#include "blocks/astc_ise.h"
 #include "blocks/astc_weights.h"
-#include "kernels/chords.h"
-#include "rows/rdo_astc_sources.h"
+#include "rows/rdo_copy_pass.h"
 
 namespace tex::inline v1 {
 namespace {
 
-constexpr float kDegreesOfAstcChord = 57.29577951308232f;  // for short chords
+constexpr float kComponentOfCode = 2.0f / 255.0f;
 
-struct AstcChoice {
-    std::byte bytes[kAstcBlockBytes];
-    int distance;  // of what is copied, in bytes; 0: nothing is
-    int copied;    // bytes
-    RdoAstcTexels decoded;
-};
-
-class AstcPass final : public RdoRuns {
+class AstcKind {
 public:
-    AstcPass(const RdoAstcBand& band, const ByteCounts& literals)
-        : RdoRuns(band), band_(band), literal_bits_(literal_bits(literals)),
-          sources_(band.block, band.window, band.count()) {}
+    using Texels = RdoAstcTexels;
+    using Shape = std::optional<AstcLines>;
+    static constexpr RdoReach kReach = {6, 1.3f};
+
+    explicit AstcKind(const RdoAstcBand& band) : band_(band) {
+        for (const auto& grid : astc_plans(band.block).grids)
+            grids_[grid->extent.width][grid->extent.height] = grid.get();
+    }
+
+    [[nodiscard]] Shape shape_of(const std::byte* bytes) const { return read_astc_lines(band_.block, bytes); }
+    [[nodiscard]] static bool has_front(const Shape& shape) { return shape.has_value(); }
+    [[nodiscard]] static RdoLine line_of(const Shape& shape);
+    void decode(const Shape& /*shape*/, const std::byte* bytes, Texels& texels) const {
+        decode_astc_normals(band_.block, bytes, texels);
+    }
+    [[nodiscard]] static const float* x(const Texels& texels) { return texels.x; }
+    [[nodiscard]] static const float* y(const Texels& texels) { return texels.y; }
+
+    void start(int block) {
+        index_ = static_cast<std::size_t>(block);
+        its_ = &band_.blocks[index_];
+        for (int k = 0; k < band_.block_texels; ++k) {
+            codes_[0][k] = 127.5f * (its_->x[k] + 1.0f);
+            codes_[1][k] = 127.5f * (its_->y[k] + 1.0f);
+        }
+        float steepness = 0.0f;
+        for (int k = 0; k < band_.block_texels; ++k) {
+            const float zz = its_->z[k] * its_->z[k];
+            steepness += std::sqrt(1.0f + 0.5f * (1.0f - zz) / std::max(0.05f, zz));
+        }
+        // The mean of some lengths is about 0.9 of the root of their mean square.
+        scale_ = 0.9f * kDegreesOfShortChord * steepness / std::sqrt(static_cast<float>(band_.block_texels));
+    }
+    [[nodiscard]] RdoSearched searched() const { return {0, its_->x, its_->y, scale_, 0.0f}; }
+    [[nodiscard]] float chord_sum(const Texels& texels) const {
+        return astc_chord_sum(*its_, band_.block_texels, texels);
+    }
+    [[nodiscard]] float degrees(const Texels& texels) const {
+        float sums[4] = {};
+        for (int k = 0; k < band_.block_texels; k += 4) {
+            for (int n = 0; n < 4; ++n) {  // what follows the last texel is 0 in both
+                const float dx = its_->x[k + n] - texels.x[k + n], dy = its_->y[k + n] - texels.y[k + n];
+                sums[n] += dx * dx + dy * dy;
+            }
+        }
+        return scale_ * std::sqrt((sums[0] + sums[2]) + (sums[1] + sums[3]));
+    }
+    int write_front(const Shape& shape, const std::byte* from, std::byte* to, Texels& texels) const {
+        const Extent grid = shape->mode.grid;
+        write_astc_weights(*grids_[grid.width][grid.height], *shape, codes_[0], codes_[1], from, to);
+        decode_astc_normals(band_.block, to, texels);
+        return front_bytes(*shape);
+    }
+    [[nodiscard]] float front_sum(const Texels& texels) const { return chord_sum(texels); }
+    [[nodiscard]] RdoAngles angles(const Texels& texels) const {
+        return astc_angles(*its_, band_.block_texels, texels);
+    }
+    [[nodiscard]] double plain_sum() const { return its_->plain_sum; }
+    [[nodiscard]] bool is_divided() const { return band_.is_divided(index_); }
+    [[nodiscard]] std::vector<double> growths(const Texels& texels) const {
+        return astc_growths(band_, index_, texels);
+    }
 
 private:
-    void set_lambda(float lambda) override {
-        lambda_ = lambda;
-        sources_.set_lambda(lambda);
-    }
-    void choose_block(int block) override;
-    void keep_block(int block) override { write(block, plain_choice(block)); }
-    [[nodiscard]] AstcChoice plain_choice(int block) const;
-    [[nodiscard]] float bits_of(const AstcChoice& choice) const;
-    void try_choice(int block, const AstcChoice& choice);
-    void try_all(int block, int at);
-    void try_front(int block, int at);
-    void write(int block, const AstcChoice& choice);
-
-    [[nodiscard]] std::byte* written(int block) {
-        return result_.blocks.data() + std::ptrdiff_t{kAstcBlockBytes} * block;
-    }
+    static int front_bytes(const AstcLines& lines) { return (128 - lines.mode.weight_bits()) / 8; }
 
     const RdoAstcBand& band_;
-    float lambda_ = 0.0f;
-    const std::array<float, 256> literal_bits_;
-    RdoAstcSources sources_;
-    RdoMatches matches_;
-    float codes_[2][kAstcMostPlanned] = {};  // of the block: x and y from 0 to 255
-    AstcChoice best_;
-    float least_ = 0.0f;
+    const AstcGrid* grids_[9][9] = {};  // by width and height
+    std::size_t index_ = 0;
+    const RdoAstcBlock* its_ = nullptr;
+    float scale_ = 0.0f;
+    float codes_[2][kAstcMostPlanned] = {};  // x and y from 0 to 255
 };
 
-// The root of the sum of squared errors times this is about the sum of angles, in degrees.
-float astc_angle_scale(const RdoAstcBlock& block, int texels) {
-    float steepness = 0.0f;
-    for (int k = 0; k < texels; ++k) {
-        const float zz = block.z[k] * block.z[k];
-        steepness += std::sqrt(1.0f + 0.5f * (1.0f - zz) / std::max(0.05f, zz));
+// The line of one partition. With two planes, it is a rectangle.
+RdoLine AstcKind::line_of(const Shape& shape) {
+    RdoLine line;
+    if (!shape) return line;
+    const AstcMode& mode = shape->mode;
+    line.literals = static_cast<float>(kRdoBlockBytes - front_bytes(*shape));
+    if (shape->partitions > 1) return line;
+    float middle[2], step[2];
+    for (int c = 0; c < 2; ++c) {
+        const int* const ends = shape->ends[0][c];
+        middle[c] = 0.5f * static_cast<float>(ends[0] + ends[1]) * kComponentOfCode - 1.0f;
+        step[c] = static_cast<float>(ends[1] - ends[0]) * kComponentOfCode;
     }
-    // The mean of some lengths is about 0.9 of the root of their mean square.
-    return 0.9f * kDegreesOfAstcChord * steepness / std::sqrt(static_cast<float>(texels));
-}
-
-AstcChoice AstcPass::plain_choice(int block) const {
-    AstcChoice plain{{}, 0, 0, {}};
-    std::memcpy(plain.bytes, band_.plain.data() + std::ptrdiff_t{kAstcBlockBytes} * block, kAstcBlockBytes);
-    decode_astc_normals(band_.block, plain.bytes, plain.decoded);
-    return plain;
-}
-
-float AstcPass::bits_of(const AstcChoice& choice) const {
-    float bits = choice.distance == 0 ? 0.0f : matches_.bits(choice.distance, true);
-    for (int k = choice.copied; k < kAstcBlockBytes; ++k)
-        bits += literal_bits_[std::to_integer<std::size_t>(choice.bytes[k])];
-    return bits;
-}
-
-void AstcPass::try_choice(int block, const AstcChoice& choice) {
-    const float bits = lambda_ * bits_of(choice);
-    if (bits >= least_) return;
-    const RdoAstcBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
-    const float sum = astc_chord_sum(texels, band_.block_texels, choice.decoded);
-    if (sum >= kTooLong) return;
-    const float cost = kDegreesOfAstcChord * sum + bits;
-    if (cost >= least_) return;
-    least_ = cost;
-    best_ = choice;
-}
-
-void AstcPass::try_all(int block, int at) {
-    AstcChoice choice{{}, kAstcBlockBytes * (block - at), kAstcBlockBytes, sources_.decoded(at)};
-    std::memcpy(choice.bytes, written(at), kAstcBlockBytes);
-    try_choice(block, choice);
-}
-
-void AstcPass::try_front(int block, int at) {
-    const std::optional<AstcLines>& lines = sources_.lines(at);
-    if (!lines) return;
-    AstcChoice choice{{}, kAstcBlockBytes * (block - at), (128 - lines->mode.weight_bits()) / 8, {}};
-    write_astc_weights(sources_.grid(*lines), *lines, codes_[0], codes_[1], written(at), choice.bytes);
-    decode_astc_normals(band_.block, choice.bytes, choice.decoded);
-    try_choice(block, choice);
-}
-
-void AstcPass::choose_block(int block) {
-    const RdoAstcBlock& texels = band_.blocks[static_cast<std::size_t>(block)];
-    for (int k = 0; k < band_.block_texels; ++k) {
-        codes_[0][k] = 127.5f * (texels.x[k] + 1.0f);
-        codes_[1][k] = 127.5f * (texels.y[k] + 1.0f);
-    }
-    // The plain block keeps all limits.
-    least_ = kTooLong;
-    try_choice(block, plain_choice(block));
-    sources_.find({block, &texels, astc_angle_scale(texels, band_.block_texels), least_});
-    for (const int at : sources_.wholes()) try_all(block, at);
-    for (const int at : sources_.fronts()) try_front(block, at);
-    const auto try_near = [&](int distance) {
-        const int at = block - distance / kAstcBlockBytes;
-        if (distance % kAstcBlockBytes != 0 || at < 0) return;
-        const auto is_new = [at](const std::vector<int>& found) {
-            return std::find(found.begin(), found.end(), at) == found.end();
-        };
-        if (is_new(sources_.wholes())) try_all(block, at);
-        if (is_new(sources_.fronts())) try_front(block, at);
-    };
-    bool tries_before = true;
-    for (const int distance : matches_.last()) {
-        try_near(distance);
-        tries_before = tries_before && distance != kAstcBlockBytes;
-    }
-    if (tries_before) try_near(kAstcBlockBytes);
-
-    const RdoAngles angles = astc_angles(texels, band_.block_texels, best_.decoded);
-    const double growth = angles.sum - texels.plain_sum;
-    const auto index = static_cast<std::size_t>(block);
-    const bool is_spent =
-        band_.is_divided(index) ? spend(astc_growths(band_, index, best_.decoded)) : spend(block, growth);
-    if (!is_spent) return keep_block(block);
-    result_.most_raised = std::max(result_.most_raised, angles.most_raised);
-    write(block, best_);
-}
-
-void AstcPass::write(int block, const AstcChoice& choice) {
-    std::memcpy(written(block), choice.bytes, kAstcBlockBytes);
-    for (int k = choice.copied; k < kAstcBlockBytes; ++k)
-        ++result_.literals[std::to_integer<std::size_t>(choice.bytes[k])];
-    matches_.use(choice.distance);
-    if (choice.copied < kAstcBlockBytes) matches_.use(0);
-    sources_.add(choice.bytes, choice.decoded);
+    const float square = step[0] * step[0] + step[1] * step[1];
+    const auto steps = static_cast<float>(kAstcRangeTable[mode.range].levels - 1);
+    const auto weights = static_cast<float>(mode.weights() / mode.planes);
+    const bool is_line = mode.planes == 1;
+    const float along[2] = {is_line ? step[0] : std::fabs(step[0]), is_line ? step[1] : 0.0f};
+    const float across[2] = {0.0f, is_line ? 0.0f : step[1]};
+    line.set(middle, along, across, weights * square / (12.0f * steps * steps));
+    return line;
 }
 
 }  // namespace
 
 std::unique_ptr<RdoRuns> rdo_astc_pass(const RdoAstcBand& band, const ByteCounts& literals) {
-    return std::make_unique<AstcPass>(band, literals);
+    return std::make_unique<RdoCopyPass<AstcKind>>(band, literals);
 }
 
 }  // namespace tex::inline v1

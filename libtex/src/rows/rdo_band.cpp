@@ -107,17 +107,30 @@ RdoNormal rdo_normal(float x, float y) {
     return {factor * x, factor * y, std::sqrt(1.0f - std::min(1.0f, flat))};
 }
 
+RdoAngles angles_of(const float* chords, const float* plain, const float* inside, int texels) {
+    RdoAngles angles;
+    for (int k = 0; k < texels; ++k) {
+        if (inside[k] == 0.0f) continue;
+        const double angle = degrees_of_chord(chords[k]);
+        angles.sum += angle;
+        if (chords[k] > plain[k]) angles.most_raised = std::max(angles.most_raised, angle);
+    }
+    return angles;
+}
+
+float chord_sum_of(const float* chords, const float* most, const float* inside, int texels) {
+    float sum = 0.0f;
+    for (int k = 0; k < texels; ++k) {
+        if (chords[k] > most[k]) return kTooLong;
+        sum += inside[k] * chords[k];
+    }
+    return sum;
+}
+
 RdoAngles rdo_angles(const RdoBand& band, std::size_t index, const std::byte* bytes) {
     float chords[16];
     chords_of(band, index, bytes, chords);
-    RdoAngles angles;
-    for (std::size_t k = 0; k < 16; ++k) {
-        if (band.blocks[index].inside[k] == 0.0f) continue;
-        const double angle = degrees_of_chord(chords[k]);
-        angles.sum += angle;
-        if (chords[k] > band.plain_chords[16 * index + k]) angles.most_raised = std::max(angles.most_raised, angle);
-    }
-    return angles;
+    return angles_of(chords, band.plain_chords.data() + 16 * index, band.blocks[index].inside, 16);
 }
 
 RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,

@@ -30,7 +30,6 @@ struct RdoAngles {
 
 struct RdoBand : RdoBlocks {
     const HalfKind* kinds = nullptr;  // of x and y
-    int window = 0;                   // bytes
     std::vector<RdoBlock> blocks;
     std::vector<std::byte> improved;      // the same or better literals
     std::vector<float> plain_chords;      // 16 a block
@@ -41,6 +40,12 @@ struct RdoBand : RdoBlocks {
 // `first` of this level. Throws std::bad_alloc.
 RdoBand read_band(const std::function<BlockRow(int row)>& rows, int count, Extent level, int first,
                   const PackOptions& options, const std::byte* blocks);
+
+// The texels of a block, each with its chord, what that was without optimisation, and 1 or 0: see RdoBlock.
+RdoAngles angles_of(const float* chords, const float* plain, const float* inside, int texels);
+
+// The sum of the chords of a block, or kTooLong if one is longer than is allowed.
+float chord_sum_of(const float* chords, const float* most, const float* inside, int texels);
 
 // The angle of a chord between unit vectors, in degrees.
 double degrees_of_chord(float chord);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr Extent kRgbBlock{4, 4};
 constexpr std::ptrdiff_t kRgbBlockBytes = 16;
+constexpr float kNoAlpha = 2.0f;  // alpha of 1
 
 void set_unit(float x, float y, float z, float to[3]) {
     const float length = std::sqrt(x * x + y * y + z * z);
@@ -25,6 +26,13 @@ void set_unit(float x, float y, float z, float to[3]) {
     to[2] = is_sound ? z / length : 1.0f;
 }
 
+void set_normal(float x, float y, float to[3]) {
+    const RdoNormal normal = rdo_normal(x, y);
+    to[0] = normal.x;
+    to[1] = normal.y;
+    to[2] = normal.z;
+}
+
 RdoRgbBlock read_rgb_block(const float* texels, int values, Extent extent, int column, int row) {
     RdoRgbBlock block{};
     for (int k = 0; k < 16; ++k) {
@@ -32,9 +40,12 @@ RdoRgbBlock read_rgb_block(const float* texels, int values, Extent extent, int c
         const int from = std::min(j, extent.height - 1) * extent.width + std::min(i, extent.width - 1);
         const float* const texel = texels + static_cast<std::ptrdiff_t>(values) * from;
         float unit[3];
-        set_unit(texel[0], texel[1], texel[2], unit);
+        if (values == 2)
+            set_normal(texel[0], texel[1], unit);
+        else
+            set_unit(texel[0], texel[1], texel[2], unit);
         for (int c = 0; c < 3; ++c) block.texels.value[c][k] = unit[c];
-        block.texels.value[3][k] = values == 4 ? 2.0f * std::fmin(std::fmax(texel[3], 0.0f), 1.0f) : 2.0f;
+        block.texels.value[3][k] = values == 4 ? 2.0f * std::fmin(std::fmax(texel[3], 0.0f), 1.0f) : kNoAlpha;
         block.inside[k] = i < extent.width && j < extent.height ? 1.0f : 0.0f;
         block.most[k] = kTooLong;
     }
@@ -48,13 +59,16 @@ void rgb_chords(const RdoRgbBlock& block, const RdoRgbTexels& decoded, float cho
 
 }  // namespace
 
-RdoRgbEntries::RdoRgbEntries(const BlockEntries& of) : block(of) {
+RdoRgbEntries::RdoRgbEntries(const BlockEntries& of, bool is_xy) : block(of) {
     for (int n = 0; n < block.total(); ++n) {
         const auto centred = [&](int c) { return static_cast<float>(2 * block.code[n][c] - 255); };
         float unit[3];
-        set_unit(centred(0), centred(1), centred(2), unit);
+        if (is_xy)
+            set_normal(centred(0) / 255.0f, centred(3) / 255.0f, unit);
+        else
+            set_unit(centred(0), centred(1), centred(2), unit);
         for (int c = 0; c < 3; ++c) value[c][n] = unit[c];
-        value[3][n] = static_cast<float>(block.code[n][3]) * (2.0f / 255.0f);
+        value[3][n] = is_xy ? kNoAlpha : static_cast<float>(block.code[n][3]) * (2.0f / 255.0f);
         const int subset = n / block.count;
         row[n] = static_cast<unsigned char>(subset + (block.is_high(n % block.count) ? 3 : 0));
     }
@@ -76,45 +90,35 @@ void decode_rgb_entries(const RdoRgbEntries& entries, const std::byte* bytes, Rd
 }
 
 float rgb_chord_sum(const RdoRgbBlock& block, const float squares[16]) {
-    float sum = 0.0f;
-    for (int k = 0; k < 16; ++k) {
-        const float chord = std::sqrt(squares[k]);
-        if (chord > block.most[k]) return kTooLong;
-        sum += block.inside[k] * chord;
-    }
-    return sum;
+    float chords[16];
+    for (int k = 0; k < 16; ++k) chords[k] = std::sqrt(squares[k]);
+    return chord_sum_of(chords, block.most, block.inside, 16);
 }
 
 RdoAngles rgb_angles(const RdoRgbBlock& block, const RdoRgbTexels& decoded) {
     float chords[16];
     rgb_chords(block, decoded, chords);
-    RdoAngles angles;
-    for (int k = 0; k < 16; ++k) {
-        if (block.inside[k] == 0.0f) continue;
-        const double angle = degrees_of_chord(chords[k]);
-        angles.sum += angle;
-        if (chords[k] > block.plain[k]) angles.most_raised = std::max(angles.most_raised, angle);
-    }
-    return angles;
+    return angles_of(chords, block.plain, block.inside, 16);
 }
 
 RdoRgbBand read_rgb_band(const float* texels, int height, Extent level, int first, const PackOptions& options,
                          const std::byte* blocks) {
-    const Codec& codec = codec_of(options.encoding);
+    const WholeBlocks& codec = *whole_blocks(options.encoding);
     const Extent extent{level.width, height};
     const int across = blocks_across(extent.width, 4), count = across * blocks_across(extent.height, 4);
     RdoRgbBand band;
     band.window = options.rdo.window;
-    band.read_entries = codec.whole->read_entries;
+    band.read_entries = codec.read_entries;
+    band.is_xy = codec.values == 2;
     band.plain.assign(blocks, blocks + kRgbBlockBytes * count);
     band.set_parts(RdoParts(level, first).of_blocks(kRgbBlock, across, count / across));
     band.blocks.reserve(static_cast<std::size_t>(count));
     for (int n = 0; n < count; ++n) {
         RdoRgbBlock& block =
-            band.blocks.emplace_back(read_rgb_block(texels, codec.whole->values, extent, n % across, n / across));
+            band.blocks.emplace_back(read_rgb_block(texels, codec.values, extent, n % across, n / across));
         const std::byte* const bytes = blocks + kRgbBlockBytes * n;
         RdoRgbTexels decoded;
-        decode_rgb_entries(RdoRgbEntries(band.read_entries(bytes)), bytes, decoded);
+        decode_rgb_entries(band.entries(bytes), bytes, decoded);
         rgb_chords(block, decoded, block.plain);
         block.plain_sum = rgb_angles(block, decoded).sum;
         RdoPart& part = band.part(static_cast<std::size_t>(n));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// rdo_rgb_band.h: the blocks of a band of BC7 or UASTC, which hold x, y and z, and the angles of their texels, for
+// rdo_rgb_band.h: the blocks of a band of BC7 or UASTC, and the angles of their texels, for
 // rate-distortion optimisation.
 //
-// Only directions count: decoded vectors are made unit. Where alpha holds data, a texel is a vector of four components,
-// the last of which is twice alpha, as the encoder weighs it; the "angle" of such texels is that whose chord is as long
-// as the distance of these vectors.
+// Only directions count: decoded vectors of x, y and z are made unit. Where alpha holds data, a texel is a vector of
+// four components, the last of which is twice alpha, as the encoder weighs it; the "angle" of such texels is that whose
+// chord is as long as the distance of these vectors.
 
 #pragma once
 
@@ -34,7 +34,9 @@ struct RdoRgbBlock {
 
 // The entries of a block as vectors, and which texels can have them.
 struct RdoRgbEntries {
-    explicit RdoRgbEntries(const BlockEntries& block);
+    RdoRgbEntries() = default;
+    // `is_xy`: R and A are x and y, and z follows from them.
+    RdoRgbEntries(const BlockEntries& block, bool is_xy);
 
     BlockEntries block;
     float value[4][BlockEntries::kMost] = {};
@@ -43,8 +45,10 @@ struct RdoRgbEntries {
 };
 
 struct RdoRgbBand : RdoBlocks {
-    int window = 0;  // bytes
     BlockEntries (*read_entries)(const std::byte* block) = nullptr;
+    bool is_xy = false;
+
+    [[nodiscard]] RdoRgbEntries entries(const std::byte* bytes) const { return {read_entries(bytes), is_xy}; }
     std::vector<RdoRgbBlock> blocks;
 };
 

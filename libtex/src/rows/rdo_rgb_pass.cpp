@@ -3,169 +3,110 @@
 #include "rows/rdo_rgb_pass.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 
-#include "kernels/chords.h"
 #include "kernels/entry_search.h"
-#include "rows/rdo_rgb_sources.h"
+#include "rows/rdo_copy_pass.h"
 
 namespace tex::inline v1 {
 namespace {
 
-constexpr float kDegreesOfRgbChord = 57.29577951308232f;  // for short chords
-constexpr int kRgbPassBytes = 16;                         // of a block
-
-struct RgbChoice {
-    std::byte bytes[kRgbPassBytes];
-    int distance;  // of what is copied, in bytes; 0: nothing is
-    int copied;    // bytes
-    RdoRgbTexels decoded;
-    int entries;  // the block that has its entries; its own are the next ones
-};
-
-class RgbPass final : public RdoRuns {
+class RgbKind {
 public:
-    RgbPass(const RdoRgbBand& band, const ByteCounts& literals)
-        : RdoRuns(band), band_(band), literal_bits_(literal_bits(literals)), sources_(band.window, band.count()) {}
+    using Texels = RdoRgbTexels;
+    using Shape = RdoRgbEntries;
+    static constexpr RdoReach kReach = {16, 2.0f};
+
+    explicit RgbKind(const RdoRgbBand& band) : band_(band) {}
+
+    [[nodiscard]] Shape shape_of(const std::byte* bytes) const { return band_.entries(bytes); }
+    [[nodiscard]] static bool has_front(const Shape& shape) { return shape.block.count > 1; }
+    [[nodiscard]] static RdoLine line_of(const Shape& shape);
+    static void decode(const Shape& shape, const std::byte* bytes, Texels& texels) {
+        decode_rgb_entries(shape, bytes, texels);
+    }
+    [[nodiscard]] static const float* x(const Texels& texels) { return texels.value[0]; }
+    [[nodiscard]] static const float* y(const Texels& texels) { return texels.value[1]; }
+
+    void start(int block) { its_ = &band_.blocks[static_cast<std::size_t>(block)]; }
+    [[nodiscard]] RdoSearched searched() const {
+        const float(*const value)[16] = its_->texels.value;
+        float steepness = 0.0f;
+        for (int k = 0; k < 16; ++k) {
+            const float zz = value[2][k] * value[2][k];
+            steepness += std::sqrt(1.0f + 0.5f * (1.0f - zz) / std::max(0.05f, zz));
+        }
+        // The mean of some lengths is about 0.9 of the root of their mean square.
+        return {0, value[0], value[1], 0.9f * kDegreesOfShortChord * steepness / 4.0f, 0.0f};
+    }
+    [[nodiscard]] float chord_sum(const Texels& texels) const {
+        float squares[16];
+        squared_distances(its_->texels.value, texels.value, squares);
+        return rgb_chord_sum(*its_, squares);
+    }
+    [[nodiscard]] float degrees(const Texels& texels) const {
+        float squares[16], sums[4] = {};
+        squared_distances(its_->texels.value, texels.value, squares);
+        for (int k = 0; k < 16; ++k) sums[k % 4] += squares[k];
+        return 0.9f * 4.0f * kDegreesOfShortChord * std::sqrt((sums[0] + sums[2]) + (sums[1] + sums[3]));
+    }
+    int write_front(const Shape& shape, const std::byte* from, std::byte* to, Texels& texels) {
+        float found[16];
+        closest_entries({its_->texels.value, shape.value, shape.block.total(), shape.row, shape.distances},
+                        front_squares_, found);
+        std::uint8_t numbers[16];
+        for (int k = 0; k < 16; ++k) {
+            const auto n = static_cast<int>(found[k]);
+            numbers[k] = static_cast<std::uint8_t>(n % shape.block.count);
+            for (int c = 0; c < 4; ++c) texels.value[c][k] = shape.value[c][n];
+        }
+        write_entry_numbers(shape.block, from, numbers, to);
+        return shape.block.front_bytes();
+    }
+    [[nodiscard]] float front_sum(const Texels& /*texels*/) const { return rgb_chord_sum(*its_, front_squares_); }
+    [[nodiscard]] RdoAngles angles(const Texels& texels) const { return rgb_angles(*its_, texels); }
+    [[nodiscard]] double plain_sum() const { return its_->plain_sum; }
+    // Squares consist of whole blocks of 4x4 texels.
+    [[nodiscard]] static bool is_divided() { return false; }
+    [[nodiscard]] static std::vector<double> growths(const Texels& /*texels*/) { return {}; }
 
 private:
-    void set_lambda(float lambda) override {
-        lambda_ = lambda;
-        sources_.set_lambda(lambda);
-    }
-    void choose_block(int block) override;
-    void keep_block(int block) override { write(block, plain_choice(block)); }
-    [[nodiscard]] RgbChoice plain_choice(int block) const;
-    [[nodiscard]] float bits_of(const RgbChoice& choice) const;
-    void try_choice(const RdoRgbBlock& block, const RgbChoice& choice, const float squares[16]);
-    void try_all(int block, int at);
-    void try_front(int block, int at);
-    void write(int block, const RgbChoice& choice);
-
-    [[nodiscard]] const RdoRgbBlock& texels(int block) const { return band_.blocks[static_cast<std::size_t>(block)]; }
-    [[nodiscard]] std::byte* written(int block) {
-        return result_.blocks.data() + std::ptrdiff_t{kRgbPassBytes} * block;
-    }
-
     const RdoRgbBand& band_;
-    float lambda_ = 0.0f;
-    const std::array<float, 256> literal_bits_;
-    RdoRgbSources sources_;
-    RdoMatches matches_;
-    RgbChoice best_;
-    float least_ = 0.0f;
+    const RdoRgbBlock* its_ = nullptr;
+    float front_squares_[16] = {};
 };
 
-// The root of the sum of squared errors of x and y times this is about the sum of angles, in degrees.
-float rgb_angle_scale(const RdoRgbBlock& block) {
-    float steepness = 0.0f;
-    for (const float z : block.texels.value[2])
-        steepness += std::sqrt(1.0f + 0.5f * (1.0f - z * z) / std::max(0.05f, z * z));
-    // The mean of some lengths is about 0.9 of the root of their mean square.
-    return 0.9f * kDegreesOfRgbChord * steepness / 4.0f;
-}
-
-RgbChoice RgbPass::plain_choice(int block) const {
-    RgbChoice plain{{}, 0, 0, {}, block};
-    std::memcpy(plain.bytes, band_.plain.data() + std::ptrdiff_t{kRgbPassBytes} * block, kRgbPassBytes);
-    decode_rgb_entries(RdoRgbEntries(band_.read_entries(plain.bytes)), plain.bytes, plain.decoded);
-    return plain;
-}
-
-float RgbPass::bits_of(const RgbChoice& choice) const {
-    float bits = choice.distance == 0 ? 0.0f : matches_.bits(choice.distance, true);
-    for (int k = choice.copied; k < kRgbPassBytes; ++k)
-        bits += literal_bits_[std::to_integer<std::size_t>(choice.bytes[k])];
-    return bits;
-}
-
-void RgbPass::try_choice(const RdoRgbBlock& block, const RgbChoice& choice, const float squares[16]) {
-    const float bits = lambda_ * bits_of(choice);
-    if (bits >= least_) return;
-    const float sum = rgb_chord_sum(block, squares);
-    if (sum >= kTooLong) return;
-    const float cost = kDegreesOfRgbChord * sum + bits;
-    if (cost >= least_) return;
-    least_ = cost;
-    best_ = choice;
-}
-
-void RgbPass::try_all(int block, int at) {
-    RgbChoice choice{{}, kRgbPassBytes * (block - at), kRgbPassBytes, sources_.decoded(at), at};
-    std::memcpy(choice.bytes, written(at), kRgbPassBytes);
-    float squares[16];
-    squared_distances(texels(block).texels.value, choice.decoded.value, squares);
-    try_choice(texels(block), choice, squares);
-}
-
-void RgbPass::try_front(int block, int at) {
-    const RdoRgbEntries& entries = sources_.entries(at);
-    if (entries.block.count == 1) return;
-    float squares[16], found[16];
-    closest_entries({texels(block).texels.value, entries.value, entries.block.total(), entries.row, entries.distances},
-                    squares, found);
-    RgbChoice choice{{}, kRgbPassBytes * (block - at), entries.block.front_bytes(), {}, at};
-    std::uint8_t numbers[16];
-    for (int k = 0; k < 16; ++k) {
-        const auto n = static_cast<int>(found[k]);
-        numbers[k] = static_cast<std::uint8_t>(n % entries.block.count);
-        for (int c = 0; c < 4; ++c) choice.decoded.value[c][k] = entries.value[c][n];
+// The line of one subset.
+RdoLine RgbKind::line_of(const Shape& shape) {
+    RdoLine line;
+    const BlockEntries& block = shape.block;
+    line.literals = static_cast<float>(kRdoBlockBytes - block.front_bytes());
+    if (block.subsets > 1) return line;
+    const int last[2] = {(1 << block.bits[0]) - 1, ((1 << block.bits[1]) - 1) << block.bits[0]};
+    float step[2][2], middle[2];  // by plane and component
+    for (int c = 0; c < 2; ++c) {
+        const float* const value = shape.value[c];
+        for (int plane = 0; plane < 2; ++plane) {
+            const int other = last[1 - plane];  // the mean of both edges
+            step[plane][c] = 0.5f * (value[last[plane]] - value[0] + value[last[plane] + other] - value[other]);
+        }
+        middle[c] = 0.25f * (value[0] + value[last[0]] + value[last[1]] + value[last[0] + last[1]]);
     }
-    write_entry_numbers(entries.block, written(at), numbers, choice.bytes);
-    try_choice(texels(block), choice, squares);
-}
-
-void RgbPass::choose_block(int block) {
-    const RdoRgbBlock& its = texels(block);
-    // The plain block keeps all limits.
-    least_ = kTooLong;
-    const RgbChoice plain = plain_choice(block);
-    float squares[16];
-    squared_distances(its.texels.value, plain.decoded.value, squares);
-    try_choice(its, plain, squares);
-    sources_.find({block, &its, rgb_angle_scale(its), least_});
-    for (const int at : sources_.wholes()) try_all(block, at);
-    for (const int at : sources_.fronts()) try_front(block, at);
-    const auto try_near = [&](int distance) {
-        const int at = block - distance / kRgbPassBytes;
-        if (distance % kRgbPassBytes != 0 || at < 0) return;
-        const auto is_new = [at](const std::vector<int>& found) {
-            return std::find(found.begin(), found.end(), at) == found.end();
-        };
-        if (is_new(sources_.wholes())) try_all(block, at);
-        if (is_new(sources_.fronts())) try_front(block, at);
-    };
-    bool tries_before = true;
-    for (const int distance : matches_.last()) {
-        try_near(distance);
-        tries_before = tries_before && distance != kRgbPassBytes;
+    float squares[2], noise = 0.0f;
+    for (int plane = 0; plane < 2; ++plane) {
+        squares[plane] = step[plane][0] * step[plane][0] + step[plane][1] * step[plane][1];
+        const auto steps = static_cast<float>((1 << block.bits[plane]) - 1);
+        if (steps > 0.0f) noise += 16.0f * squares[plane] / (12.0f * steps * steps);
     }
-    if (tries_before) try_near(kRgbPassBytes);
-
-    const RdoAngles angles = rgb_angles(its, best_.decoded);
-    if (!spend(block, angles.sum - its.plain_sum)) return keep_block(block);
-    result_.most_raised = std::max(result_.most_raised, angles.most_raised);
-    write(block, best_);
-}
-
-void RgbPass::write(int block, const RgbChoice& choice) {
-    std::memcpy(written(block), choice.bytes, kRgbPassBytes);
-    for (int k = choice.copied; k < kRgbPassBytes; ++k)
-        ++result_.literals[std::to_integer<std::size_t>(choice.bytes[k])];
-    matches_.use(choice.distance);
-    if (choice.copied < kRgbPassBytes) matches_.use(0);
-    if (choice.entries < block)
-        sources_.add(RdoRgbEntries(sources_.entries(choice.entries)), choice.decoded);
-    else
-        sources_.add(RdoRgbEntries(band_.read_entries(choice.bytes)), choice.decoded);
+    const int along = squares[0] >= squares[1] ? 0 : 1;
+    line.set(middle, step[along], step[1 - along], noise);
+    return line;
 }
 
 }  // namespace
 
 std::unique_ptr<RdoRuns> rdo_rgb_pass(const RdoRgbBand& band, const ByteCounts& literals) {
-    return std::make_unique<RgbPass>(band, literals);
+    return std::make_unique<RdoCopyPass<RgbKind>>(band, literals);
 }
 
 }  // namespace tex::inline v1

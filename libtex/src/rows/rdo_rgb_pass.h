@@ -1,15 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// rdo_rgb_pass.h: one pass of rate-distortion optimisation over the blocks of a band of BC7 or UASTC.
-//
-// For each block it compares
-//
-//     literals    the block as it is without optimisation
-//     wholes      all 16 bytes of a block in the window
-//     fronts      all that is in front of the indices of one, its mode, partition, endpoints and (UASTC) hints, with
-//                 indices that are chosen again: each texel takes the closest entry
-//
-// also of the block before and of those at the last three distances, which a coder writes in a few bits, and takes the
-// one with the least D + lambda R. rdo_rgb_sources.h picks the blocks that are worth a copy.
+// rdo_rgb_pass.h: a pass of rate-distortion optimisation over the blocks of a band of BC7 or UASTC (rdo_copy_pass.h).
+// Fronts are all that is in front of the indices, mode, partition, endpoints and (UASTC) hints; each texel takes the
+// closest entry.
 
 #pragma once
 

@@ -231,7 +231,7 @@ void optimise_band(const std::function<BlockRow(int row)>& rows, int count, Exte
 
 void optimise_astc_band(const float* xy, int height, Extent level, int first, const PackOptions& options,
                         std::byte* blocks, RdoTally* tally) {
-    assert(is_optimised(options) && codec_of(options.encoding).whole != nullptr);
+    assert(is_optimised(options) && whole_blocks(options.encoding) != nullptr);
     const RdoAstcBand band = read_astc_band(xy, height, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_astc_pass(band, literals); }, options, blocks, tally);
@@ -239,7 +239,7 @@ void optimise_astc_band(const float* xy, int height, Extent level, int first, co
 
 void optimise_rgb_band(const float* texels, int height, Extent level, int first, const PackOptions& options,
                        std::byte* blocks, RdoTally* tally) {
-    assert(is_optimised(options) && codec_of(options.encoding).whole != nullptr);
+    assert(is_optimised(options) && whole_blocks(options.encoding) != nullptr);
     const RdoRgbBand band = read_rgb_band(texels, height, level, first, options, blocks);
     optimise_blocks(
         band, [&band](const ByteCounts& literals) { return rdo_rgb_pass(band, literals); }, options, blocks, tally);

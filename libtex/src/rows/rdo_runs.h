@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // rdo_runs.h: passes of rate-distortion optimisation over the blocks of a band, in the order of the file. Each part of
 // the band (rdo_parts.h) has a budget, and a lambda for each run of its blocks; what blocks copy may be in any part.
-// How blocks are chosen differs: rdo_pass.h, rdo_astc_pass.h.
+// How blocks are chosen differs: rdo_pass.h, rdo_copy_pass.h.
 
 #pragma once
 
@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <vector>
+
+#include <tex/types.h>
 
 #include "rows/rdo_budget.h"
 #include "rows/rdo_rate.h"
@@ -24,7 +26,9 @@ struct RdoPart {
 
 // What all bands have.
 struct RdoBlocks {
+    Extent block{4, 4};
     int block_texels = 16;
+    int window = 0;                // bytes
     std::vector<std::byte> plain;  // 16 bytes a block
     std::vector<int> part_of;      // of each block
     std::vector<RdoPart> parts;

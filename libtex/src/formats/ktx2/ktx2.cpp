@@ -264,7 +264,7 @@ FileLayout ktx2_layout(const TextureHead& head) {
     const Format stored = widened(head.format);
     const FormatInfo info = format_info(stored);
     const auto level_total = static_cast<std::size_t>(head.levels);
-    const std::vector<std::byte> descriptor = data_format_descriptor(stored);
+    const std::vector<std::byte> descriptor = data_format_descriptor(stored, head.swizzle);
     const std::vector<std::byte> entries = key_values(head);
     const std::size_t descriptor_offset = kHeaderBytes + level_total * kLevelIndexBytes;
     const std::size_t entries_offset = descriptor_offset + descriptor.size();

@@ -35,7 +35,13 @@ Sample block_sample(const FormatInfo& info, std::uint32_t channel, std::uint32_t
     return {channel, bit_offset, 64, 0, 0xffffffffu};
 }
 
-std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model) {
+// KHR_DF_CHANNEL_UASTC_...
+std::uint32_t uastc_channel(const Swizzle& layout) {
+    constexpr std::uint32_t kRgb = 0, kRrrg = 5, kRg = 6;
+    return layout == kSwizzleXxxy ? kRrrg : layout == kSwizzleXy ? kRg : kRgb;
+}
+
+std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model, const Swizzle& layout) {
     switch (model) {
         case kKhrBc1: return {block_sample(info, kChannelBc1aAlphaPresent, 0)};
         case kKhrBc2:
@@ -44,8 +50,8 @@ std::vector<Sample> block_samples(const FormatInfo& info, std::uint32_t model) {
         case kKhrEtc2:
             if (info.channels == 2) return {block_sample(info, 0, 0), block_sample(info, 1, 64)};
             return {block_sample(info, 0, 0)};
+        case kKhrUastc: return {{uastc_channel(layout), 0, 128, 0, 0xffffffffu}};
         case kKhrBc7:
-        case kKhrUastc:                                       // the channel is RGB
         case kKhrAstc: return {{0, 0, 128, 0, 0xffffffffu}};  // the whole block
         default: return {block_sample(info, 0, 0)};
     }
@@ -77,10 +83,10 @@ std::vector<Sample> texel_samples(const FormatInfo& info) {
 
 }  // namespace
 
-std::vector<std::byte> data_format_descriptor(Format format) {
+std::vector<std::byte> data_format_descriptor(Format format, const Swizzle& layout) {
     const FormatInfo info = format_info(format);
     const std::uint32_t model = format_row(format).codec->khr_model;
-    const std::vector<Sample> samples = info.has_blocks() ? block_samples(info, model) : texel_samples(info);
+    const std::vector<Sample> samples = info.has_blocks() ? block_samples(info, model, layout) : texel_samples(info);
     const auto block_bytes = static_cast<std::uint32_t>(24 + 16 * samples.size());
 
     ByteWriter writer;

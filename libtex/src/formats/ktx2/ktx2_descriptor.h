@@ -12,6 +12,6 @@ namespace tex::inline v1 {
 
 // The basic data format descriptor block of a format (Khronos Data Format Specification 1.3, section 5), preceded by
 // the total size. It states linear transfer and no colour primaries, because normals are not colours.
-[[nodiscard]] std::vector<std::byte> data_format_descriptor(Format format);
+[[nodiscard]] std::vector<std::byte> data_format_descriptor(Format format, const Swizzle& layout = kSwizzleXyz);
 
 }  // namespace tex::inline v1
