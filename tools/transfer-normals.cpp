@@ -43,7 +43,7 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override;
     [[nodiscard]] bool writes_models() const { return cli::writes_models(files); }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
-    // Of tasks that share the high mesh, each uses the trees of those before it, and memory holds them once.
+    // Tasks that share the high mesh use the trees of those before them, and memory holds these once.
     [[nodiscard]] std::size_t most_at_once(const std::vector<cli::Task>& tasks) const override {
         const auto shares = [this](const cli::Task& task) { return high_.is_shared(task); };
         return std::any_of(tasks.begin(), tasks.end(), shares) ? 1 : cli::kMostFilesAtOnce;

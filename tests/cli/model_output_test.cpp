@@ -193,7 +193,7 @@ TEST_F(ModelOutputs, UastcIsReadByViewersAndItsGrowthIsSaid) {
 // Text with its files becomes one file, and one file becomes text, with all commands that write models.
 TEST_F(ModelOutputs, TheNameDecidesTheForm) {
     does(
-        "pack-normals m.gltf -o one.glb --y up; mkdir alone; cp one.glb alone; cd alone; "
+        "pack-normals m.gltf -o one.glb --y up; mkdir alone out busy alone/text; cp one.glb alone; cd alone; "
         "pack-normals one.glb -o text/n.gltf; test -e text/n.bin; test $(ls text | wc -l) = 2");
     for (const std::string verb :
          {"pack-normals one.glb -o out/a.gltf", "mip-normals one.glb -o out/b.gltf --max-size 64",

@@ -35,12 +35,13 @@ protected:
         maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
         maker.add(std::vector<float>{0, 1, 1, 1, 1, 0}, "VEC2", 5126);
         maker.add(std::vector<std::uint16_t>{0, 1, 2}, "SCALAR", 5123);
-        json model = json::parse(maker.json(
-            R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":0})",
-            R"(,"images":[{"uri":"maps/n%20a.png","name":"n"},{"uri":"data:image/png;base64,Y29sb3I="},{"uri":"maps/n%20a.png"}],
+        json model = json::parse(
+            maker.json(R"({"attributes":{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2},"indices":3,"material":0})",
+                       R"(,"images":[{"uri":"maps/n%20a.png","name":"n"},{"uri":"data:image/png;base64,Y29sb3I="},
+                          {"uri":"maps/n%20a.png"}],
                 "textures":[{"source":0},{"source":1},{"source":2}],
                 "materials":[{"normalTexture":{"index":0},"pbrMetallicRoughness":{"baseColorTexture":{"index":1}},
-                              "emissiveTexture":{"index":2}}],"extras":{"kept":[1.50]}})"));
+                              "emissiveTexture":{"index":2}}],"extras":{"kept":[1.50]})"));
         // One odd byte before the second part, so that places must move.
         const std::string first = maker.binary.substr(0, 36), second = maker.binary.substr(36);
         model["buffers"] = {{{"uri", "a.bin"}, {"byteLength", first.size()}, {"name", "first"}},
@@ -57,6 +58,7 @@ protected:
         write("in/maps/n a.png", std::string("\x89PNG old"));
     }
     ModelFiles writes(const std::string& from, const std::string& to, const ModelChanges& changes = {}) {
+        std::filesystem::create_directories(std::filesystem::path(path(to)).parent_path());
         auto written = write_model(path(from), path(to), changes);
         EXPECT_TRUE(written) << written.error().message();
         return written ? *written : ModelFiles{};
@@ -76,8 +78,9 @@ protected:
         }
         for (const ModelImage& image : model->images) {
             EXPECT_FALSE(image.error);
-            const std::string file = image.file.empty() ? "" : image.file.substr(path("").size());
-            text += "[" + (file.empty() ? text_of(image.bytes) : read(file)) + "]";
+            const bool is_inside = image.file.empty();
+            const auto beside = std::filesystem::relative(image.file, path("")).string();
+            text += "[" + (is_inside ? text_of(image.bytes) : read(beside)) + "]";
         }
         return text;
     }
@@ -155,8 +158,8 @@ TEST_F(ModelForms, NothingElseIsReplaced) {
 TEST_F(ModelForms, BuffersWithoutBytesStay) {
     json model = json::parse(read("in/m.gltf").substr(3));
     json& buffers = model["buffers"];
-    buffers.insert(buffers.begin(),
-                   {{"byteLength", 64}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+    const json fallback = {{"byteLength", 64}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}};
+    buffers.insert(buffers.begin(), fallback);
     for (json& view : model["bufferViews"]) view["buffer"] = view["buffer"].get<int>() + 1;
     write("in/f.gltf", model.dump());
     writes("in/f.gltf", "out/f.glb");

@@ -22,7 +22,7 @@ std::vector<int> common_numbers(const TransferInputs& inputs) {
     return both;
 }
 
-// Those with a number, or all of them.
+// The parts or places with a number, or all of them.
 std::vector<std::size_t> chosen(std::size_t count, const std::vector<int>& numbers, int number) {
     std::vector<std::size_t> chosen;
     for (std::size_t k = 0; k < count; ++k) {

@@ -34,7 +34,7 @@ public:
 
     // How many triangles stand in all places.
     [[nodiscard]] std::size_t triangles() const { return count_; }
-    // Of all places, or else of all parts.
+    // How many places there are, or else parts.
     [[nodiscard]] std::size_t standing() const { return places_.empty() ? parts_.size() : places_.size(); }
 
     // The tree over those with these numbers, which must have a triangle. It refers to this. Errors: bad_data
