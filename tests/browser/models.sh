@@ -4,10 +4,11 @@
 #
 #     tests/browser/models.sh BUILD FOLDER...
 #
-# Every .glb and .gltf in the folders that has a normal map is written three times: in its own form, as .glb and as
-# .gltf. Each is drawn by three.js in Chromium, from three sides, beside the original, and no code may differ, unless
-# the old map was KTX2. Khronos' validator may find no error or warning that it does not find in the original. Prints what each model shows, and counts; exits
-# with 1 if a model fails, and with 77 if npm or chromium is missing. tests/bench/MODELS.md has the last result.
+# Every .glb and .gltf in the folders that has a normal map is written twice: in its own form, and in the other one.
+# Each is drawn by three.js in Chromium, from three sides, beside the original, and no code may differ, unless the old
+# map was KTX2. Khronos' validator may find no error or warning that it does not find in the original.
+# Prints what each model shows, and counts; exits with 1 if a model fails, and with 77 if npm or chromium is missing.
+# tests/bench/MODELS.md has the last result.
 set -euo pipefail
 tests=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
 build=$(realpath "$1")

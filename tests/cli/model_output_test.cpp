@@ -196,15 +196,15 @@ TEST_F(ModelOutputs, TheNameDecidesTheForm) {
         "pack-normals m.gltf -o one.glb --y up; mkdir alone out busy alone/text; cp one.glb alone; cd alone; "
         "pack-normals one.glb -o text/n.gltf; test -e text/n.bin; test $(ls text | wc -l) = 2");
     for (const std::string verb :
-         {"pack-normals one.glb -o out/a.gltf", "mip-normals one.glb -o out/b.gltf --max-size 64",
-          "convert-normals one.glb -o out/c.gltf --tangents mikktspace", "repair-normals m.gltf -o out/d.glb",
-          "convert-normals m.gltf -o out/e.glb --tangents mikktspace", "mip-normals m.gltf -o out/f.glb --max-size 64",
+         {"pack-normals one.glb -o out/a.gltf", "convert-normals one.glb -o out/c.gltf --tangents mikktspace",
+          "repair-normals N802*.glb -o out/d.gltf", "convert-normals m.gltf -o out/e.glb --tangents mikktspace",
           "transfer-normals one.glb m.gltf -o out/g.gltf --extent 16",
           "transfer-normals m.gltf one.glb -o out/h.glb --extent 16"}) {
         does(verb);
         const std::string made = verb.substr(verb.find("out/"), verb.find("gl", verb.find("out/")) - verb.find("out/"));
         does("check-normals " + made + "gl* --json > /dev/null || test $? = 1");
     }
+    refuses("mip-normals one.glb -o out/x.glb", 2, "out/x.glb: models hold no levels");
     // What goes into the file is an input, too.
     does("ln maps/up.png hard.glb");
     refuses("pack-normals m.gltf -o hard.glb", 2, "is the input");
