@@ -7,7 +7,7 @@
 #                                   tidy fuzz package abi readers engines platforms portable windows npm
 #                                   release
 #
-# FUZZ_SECONDS is the time for each fuzzer (default: 60).
+# FUZZ_SECONDS is the time for each fuzzer (default: 60). MODELS is a folder with more glTF models for the step engines.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=.ci/packages.sh
@@ -184,6 +184,7 @@ engines() {
     script spheres tests/engines/spheres.sh || status=1
     script engines tests/engines/engines.sh || status=1
     script three tests/browser/three.sh || status=1
+    script models tests/browser/models.sh build/release ../shared/data samples ${MODELS:+"$MODELS"} || status=1
     script ktx tests/ktx.sh || status=1
     return "$status"
 }

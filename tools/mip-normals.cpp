@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <tex/tex.h>
 
+#include "batch/model_plan.h"
 #include "batch/repack.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -52,6 +53,12 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
 }
 
 cli::OutputRules MipNormals::rules() const {
+    if (cli::writes_models(files)) {
+        throw cli::UsageError(
+            fmt::format("{}: models hold no levels, because engines build them; pack-normals writes models, and its "
+                        "--max-size makes their maps smaller",
+                        cli::printable(files.output.empty() ? files.name : files.output)));
+    }
     cli::OutputRules rules;
     rules.batch = Container::dds;
     rules.amend = [this](cli::Task& task) {

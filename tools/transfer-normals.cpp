@@ -13,6 +13,7 @@
 #include <tex/tex.h>
 
 #include "batch/batch.h"
+#include "batch/lod_rules.h"
 #include "batch/model_plan.h"
 #include "cli/text.h"
 #include "cli/usage_error.h"
@@ -20,11 +21,11 @@
 #include "options/high_details.h"
 #include "options/high_meshes.h"
 #include "options/mips.h"
-#include "options/obj_materials.h"
 #include "options/part_ids.h"
 #include "options/rays.h"
 #include "options/tangent_space.h"
 #include "reports/transfer_report.h"
+#include "tasks/lod_notes.h"
 #include "tasks/model_occlusion.h"
 #include "tasks/model_output.h"
 #include "tasks/written_levels.h"
@@ -40,16 +41,11 @@ public:
 private:
     [[nodiscard]] const cli::MipChainOptions* mip_chain() const override { return &mips_; }
     [[nodiscard]] cli::OutputRules rules() const override;
-    void set_material_rules(cli::OutputRules& rules) const;
-    void add_pictures(const std::vector<std::string>& models, std::vector<std::string>& files_of) const;
     [[nodiscard]] bool writes_models() const { return cli::writes_models(files); }
-    [[nodiscard]] bool takes_all_materials() const { return low_.material() == "all"; }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
-    // Tiles and materials of a mesh share the high one, and each has a tree of it.
+    // Tasks that share the high mesh use the trees of those before them, and memory holds these once.
     [[nodiscard]] std::size_t most_at_once(const std::vector<cli::Task>& tasks) const override {
-        const auto shares = [](const cli::Task& task) {
-            return task.is_tile_of_mesh() || task.model || task.model_output;
-        };
+        const auto shares = [this](const cli::Task& task) { return high_.is_shared(task); };
         return std::any_of(tasks.begin(), tasks.end(), shares) ? 1 : cli::kMostFilesAtOnce;
     }
     [[nodiscard]] Result<void> process(cli::Job& job) override;
@@ -135,12 +131,12 @@ cli::OutputRules TransferNormals::rules() const {
     rules.batch = Container::dds;
     rules.joins = !high_.is_given();
     if (rules.joins) rules.shared = high_.buffers_of(command.inputs());
-    if (rules.joins) add_pictures(command.inputs(), rules.shared);
+    if (rules.joins) pictures_.add_files_beside(command.inputs(), running.read, rules.shared);
     rules.tiles = [this](const std::string& input) { return low_.tiles_of_low(input, running.read); };
-    set_material_rules(rules);
+    cli::set_lod_rules(rules, {command, files, low_, maps_, running.read});
     rules.amend = [this](cli::Task& task) {
         high_.amend(task);
-        if (high_.is_given()) add_pictures(high_.names_of(task), task.own);
+        if (high_.is_given()) pictures_.add_files_beside(high_.names_of(task), running.read, task.own);
         guides_.amend(task);
         pictures_.amend(task);
         ids_.amend(task);
@@ -149,54 +145,11 @@ cli::OutputRules TransferNormals::rules() const {
     return rules;
 }
 
-void TransferNormals::add_pictures(const std::vector<std::string>& models, std::vector<std::string>& files_of) const {
-    MeshReadOptions how;
-    how.reader = running.read;
-    for (const std::string& model : models) {
-        if (pictures_.takes_alpha()) cli::add_obj_files(model, files_of);
-        if (!pictures_.takes_own() && !(pictures_.takes_alpha() && cli::has_cutouts(model, how))) continue;
-        for (std::string& file : cli::files_beside_model(model, how))
-            if (!file.empty()) files_of.push_back(std::move(file));
-    }
-}
-
-// If materials get maps, nothing else chooses parts of the low mesh. Guides are for one map, and so are reports of
-// pictures.
-void TransferNormals::set_material_rules(cli::OutputRules& rules) const {
-    std::vector<std::string> idle = {"--primitive", "--node", "--uv-set", "--tile", "--cage"};
-    MeshReadOptions how;
-    how.reader = running.read;
-    if (writes_models()) {
-        rules.models = takes_all_materials() ? "" : low_.material();
-        rules.writes_models = true;
-        rules.lods = {low_.tangents(), maps_.puts_occlusion_into_model()};
-        rules.not_for_models = idle;
-        for (const char* const name :
-             {"--skew", "--offset", "--object-out", "--height-out", "--position-out", "--occlusion-out", "--bent-out",
-              "--thickness-out", "--color-out", "--vertex-color-out", "--missed-out", "--id-out"})
-            rules.not_for_models.emplace_back(name);
-        return;
-    }
-    if (maps_.puts_occlusion_into_model())
-        throw cli::UsageError("--occlusion-into", "a model is no output here: give -o x.glb");
-    if (!takes_all_materials()) return;
-    idle.emplace_back("--report");
-    if (const auto given = command.given_of(idle); !given.empty())
-        throw cli::UsageError("--material all and " + given.front() + " contradict each other");
-    rules.materials = [how](const cli::Input& input) {
-        std::vector<cli::Input> inputs;
-        for (auto& material : cli::materials_of_model(input.name, "", how)) {
-            inputs.push_back(input);
-            inputs.back().model = std::move(material);
-        }
-        return inputs;
-    };
-}
-
 Result<void> TransferNormals::check(const std::vector<cli::Task>& tasks) {
     if (writes_models() && mips_.levels.value_or(1) != 1)
         throw cli::UsageError("--mips", "models hold no levels: engines build them");
     mips_.check(tasks);
+    high_.note_tasks(tasks);
     for (const cli::Task& task : tasks) {
         if (task.joined.empty() && !high_.is_given())
             throw cli::UsageError("no high mesh: give LOW HIGH... -o FILE, or --high PATTERN");
@@ -245,6 +198,7 @@ Result<TransferredMaps> TransferNormals::cast(cli::Job& job, const Meshes& meshe
     inputs.high_details = pictures.details;
     ids_.number(high, inputs);
     inputs.high_places = high.places;
+    inputs.trees = high.trees;
     // A simplified model lies on the other one, and what stands before it is another part.
     TransferOptions with = rays_.transfer(writes_models() ? HitChoice::nearest : HitChoice::outermost);
     if (guides_.wants_straight()) with.rays = RayMode::straight;
@@ -294,9 +248,9 @@ Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, Transfe
 Result<void> TransferNormals::make(cli::Job& job) {
     const auto meshes = read(job);
     if (!meshes) return meshes.error();
-    const auto pictures = pictures_.read(job, *meshes->high);
+    const auto pictures = pictures_.read(job, meshes->high);
     if (!pictures) return pictures.error();
-    auto maps = cast(job, *meshes, *pictures, rays_.extent(), false);
+    auto maps = cast(job, *meshes, **pictures, rays_.extent(), false);
     if (!maps) return maps.error();
     if (auto judged = rays_.judge(job, *maps, guides_.remedy()); !judged) return judged;
     if (auto written = write(job, *meshes, *maps); !written) return written;
@@ -364,13 +318,14 @@ Result<void> TransferNormals::make_model(cli::Job& job) {
     ModelChanges changes = model.changes(job.task.container);
     const auto high = read_high(job);
     if (!high) return high.error();
-    const auto pictures = pictures_.read(job, **high);
+    const auto pictures = pictures_.read(job, *high);
     if (!pictures) return pictures.error();
+    if (auto noted = cli::note_lacks(job); !noted) return noted;
     const std::size_t count = model.images.size();
     const auto make = [&](cli::Job& one, ModelPicture& picture) {
         const auto k = static_cast<std::size_t>(&picture - changes.pictures.data());
         const bool has_occlusion = !model.occlusion.empty();
-        return make_picture(one, *pictures, *high, picture, has_occlusion ? &changes.pictures[count + k] : nullptr,
+        return make_picture(one, **pictures, *high, picture, has_occlusion ? &changes.pictures[count + k] : nullptr,
                             has_occlusion ? model.occlusion[k] : cli::ModelOcclusion{});
     };
     if (auto made = cli::make_pictures(job, changes, make); !made) return made;

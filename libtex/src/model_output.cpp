@@ -19,7 +19,7 @@
 #include "files/system_error.h"
 #include "mesh/gltf.h"
 #include "mesh/gltf_names.h"
-#include "mesh/gltf_writer.h"
+#include "mesh/gltf_output.h"
 #include "mesh/json.h"
 #include "threads/no_throw.h"
 
@@ -41,16 +41,13 @@ fs::path folder_of(const std::string& path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
-// The type of a GLB file is in its first bytes, and readers of glTF go by the extension, too.
-Result<void> check_type(const std::string& input, const std::string& output, std::span<const std::byte> bytes) {
-    const bool is_binary = bytes.size() >= 4 && bytes[0] == std::byte{'g'};
+// Readers of glTF go by the extension, and so does the form of the output.
+Result<bool> is_binary_name(const std::string& output) {
     std::string extension = slashed(fs::path(output).extension());
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    const std::string wanted = is_binary ? ".glb" : ".gltf";
-    if (extension == wanted) return {};
-    return Error{ErrorCode::unsupported, input,
-                 std::string(is_binary ? "is GLB" : "is glTF as text") + ", and so the output must be called " +
-                     wanted + ": " + output};
+    if (extension == ".glb") return true;
+    if (extension == ".gltf") return false;
+    return Error{ErrorCode::unsupported, output, "a model must be called .glb or .gltf"};
 }
 
 // Copies that cannot be made are left out, and listed.
@@ -75,6 +72,7 @@ Result<void> list_files(const std::string& input, const std::string& output, Pre
     prepared.made.beside = std::move(beside_output);
     prepared.files.files.push_back({output, {}, true});
     prepared.files.outside = prepared.made.outside;
+    for (const std::string& file : prepared.made.joined) prepared.files.joined.push_back(beside(input, file));
     prepared.files.compressed = prepared.made.compressed;
     prepared.files.mirrors = prepared.made.mirrors;
     prepared.files.left_mirrors = prepared.made.left_mirrors;
@@ -87,12 +85,14 @@ Result<Prepared> prepare(const std::string& input, const std::string& output, co
     const auto bytes = read_at_most(input, options.max_bytes);
     if (!bytes) return bytes.error();
     if (!is_gltf(*bytes)) return Error{ErrorCode::unsupported, input, "is not a glTF model"};
-    if (auto fits = check_type(input, output, *bytes); !fits) return fits.error();
+    const auto is_binary = is_binary_name(output);
+    if (!is_binary) return is_binary.error();
     const LoadBeside load = [&](const std::string& name) { return read_beside(input, name, options.max_bytes); };
     ModelPlace place;
     std::error_code error;
     place.is_same_folder = fs::equivalent(folder_of(input), folder_of(output), error);
     place.name = output.substr(name_begin(output));
+    place.is_binary = *is_binary;
     auto made = write_gltf(*bytes, load, place, changes);
     if (!made) return made.error().of(input);
     Prepared prepared{std::move(*made), {}};

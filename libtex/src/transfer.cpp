@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -95,7 +95,7 @@ Result<void> fill_rest(TransferredMaps& result, std::int64_t width, const Execut
 bool has_area(const RayGroups& groups) {
     for (const RayGroup& group : groups.all()) {
         const MeshPart* last = nullptr;
-        for (const MeshPart* part : group.triangles.parts()) {
+        for (const MeshPart* part : group.triangles().parts()) {
             if (part == std::exchange(last, part)) continue;  // in several places
             for (std::size_t t = 0; t < part->triangles(); ++t) {
                 const auto corners = Triangles::Triangle{*part, t}.corners();
@@ -202,7 +202,7 @@ Result<TransferredMaps> cast_all(Extent extent, const TangentSpace& low, const s
     if (options.vertex_colors) result.vertex_color = colors_of(extent);
     std::vector<RayCaster> casters;
     for (const RayGroup& group : groups->all())
-        casters.emplace_back(group.triangles, group.tree, surface, options.hit, options.backfaces, result.back);
+        casters.emplace_back(group.triangles(), group.tree(), surface, options.hit, options.backfaces, result.back);
     std::optional<SecondRays> second;
     if (options.has_second_rays()) {
         constexpr double kNoLimit = std::numeric_limits<double>::infinity();

@@ -26,6 +26,10 @@ namespace {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc == 1) {  // ninja bench
+        std::puts("usage: lod_bench ORIGINAL LOD...; skipped: it needs models, which tests/bench/lods.sh makes");
+        return 0;
+    }
     if (argc < 3) fail("ORIGINAL LOD...");
     std::vector<std::vector<tex::cli::LodMaterial>> models;
     for (int k = 1; k < argc; ++k) {

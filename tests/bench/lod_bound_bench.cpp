@@ -173,6 +173,10 @@ struct Sums {
 }  // namespace
 
 int main(int argc, char** argv) {
+    if (argc == 1) {  // ninja bench
+        std::puts("usage: lod_bound_bench ORIGINAL OLD NEW [EXTENT]; skipped: it needs models (tests/bench/lods.sh)");
+        return 0;
+    }
     if (argc < 4) fail("ORIGINAL OLD NEW [EXTENT]");
     std::array<std::vector<LodMaterial>, 3> models;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "bench/wavy_sphere.h"
 #include "rays/box_tree.h"

@@ -81,21 +81,25 @@ protected:
         EXPECT_EQ(scratch_.list(), before) << script;
     }
     // Squares from z = 0 beside each other, each with a material, whose JSON is given.
-    void write_squares(const std::string& name, const std::vector<std::string>& materials, const std::string& more) {
+    void write_squares(const std::string& name, const std::vector<std::string>& materials, const std::string& more,
+                       const std::vector<float>& n = {0, 0, 1}) {
         GltfMaker maker;
         std::string primitives, list;
         for (std::size_t k = 0; k < materials.size(); ++k) {
             const auto x = static_cast<float>(2 * k);
             const int first = maker.add(std::vector<float>{x, 0, 0, x + 1, 0, 0, x + 1, 1, 0, x, 1, 0}, "VEC3", 5126);
-            maker.add(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 5126);
+            maker.add(std::vector<float>{n[0], n[1], n[2], n[0], n[1], n[2], n[0], n[1], n[2], n[0], n[1], n[2]},
+                      "VEC3", 5126);
             maker.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2", 5126);
             maker.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR", 5123);
             primitives += std::string(k == 0 ? "" : ",") + "{\"attributes\":{\"POSITION\":" + std::to_string(first) +
                           ",\"NORMAL\":" + std::to_string(first + 1) + ",\"TEXCOORD_0\":" + std::to_string(first + 2) +
-                          "},\"indices\":" + std::to_string(first + 3) + ",\"material\":" + std::to_string(k) + "}";
+                          "},\"indices\":" + std::to_string(first + 3) +
+                          (materials[k].empty() ? "" : ",\"material\":" + std::to_string(k)) + "}";
             list += (k == 0 ? "" : ",") + materials[k];
         }
-        scratch_.write(name, maker.glb(primitives, ",\"materials\":[" + list + "]" + more));
+        const std::string listed = list.empty() ? "" : ",\"materials\":[" + list + "]";
+        scratch_.write(name, maker.glb(primitives, listed + more));
     }
     // A picture with these codes everywhere.
     void write_flat(const std::string& name, const std::string& codes) {
@@ -434,7 +438,6 @@ TEST_F(Lods, WhatCannotBeIsRefused) {
     refuses(pair + "-o x.glb --cage low.glb", 2, "--cage is for one map, and not for models");
     refuses(pair + "-o x.glb --mips all", 2, "models hold no levels");
     refuses(pair + "-o x.glb --format bc5", 2, "models hold normals as");
-    refuses(pair + "-o x.gltf", 4, "is GLB, and so the output must be called .glb");
     refuses(pair + "-o x.glb --material glass", 4, "has no material \"glass\"");
     refuses("transfer-normals low.glb -o x.glb", 2, "no high mesh");
     refuses(pair + "--material all --node a --out-dir out", 2, "--material all and --node contradict each other");
@@ -446,6 +449,44 @@ TEST_F(Lods, WhatCannotBeIsRefused) {
     refuses(pair + "-o x.glb --no-clobber", 3, "exists, and --no-clobber is given");
     scratch_.write("n.png", std::string("These are words."));
     refuses(pair + "-o y.glb", 4, "n.png");
+}
+
+// Low meshes of one run share what was read and made of the high one: with their own maps and with pictures.
+TEST_F(Lods, SeveralLowMeshesAreWhatEachIsAlone) {
+    scratch_.write("mid.glb", sphere(32, 16, R"({"name":"Skin"})"));
+    write_flat("n.png", "160,128,251");
+    does("cp high.glb h.glb");
+    does("transfer-normals low.glb mid.glb --high h.glb --out-dir lods --name '{stem}.glb' --extent 32 --quiet");
+    does(
+        "transfer-normals low.glb mid.glb --high h.glb --out-dir maps --extent 32 --high-normals n.png "
+        "--occlusion-out '{stem}_ao.png' --quiet");
+    for (const std::string stem : {"low", "mid"}) {
+        does("transfer-normals " + stem + ".glb h.glb -o alone.glb --extent 32 --quiet; cmp alone.glb lods/" + stem +
+             ".glb");
+        does("transfer-normals " + stem +
+             ".glb h.glb -o alone.dds --extent 32 --high-normals n.png --occlusion-out "
+             "ao.png --quiet; cmp alone.dds maps/" +
+             stem + ".dds; cmp ao.png maps/" + stem + "_ao.png");
+    }
+}
+
+// Simplifiers drop materials, and quantise normals.
+TEST_F(Lods, WhatSimplifiedModelsLackIsSaidAndMade) {
+    write_squares("plain.glb", {""}, "");
+    write_squares("one.glb", {R"({"name":"Skin"})"}, "");
+    for (const std::string name : {"a.glb", "a.gltf"}) {
+        const Ran made = does("transfer-normals plain.glb one.glb -o " + name + " --extent 16");
+        EXPECT_NE(made.err.find("its triangles have no material; they get one"), std::string::npos) << made.err;
+        const JsonValue report = JsonValue::parse(does("check-normals " + name + " --json || true").out);
+        EXPECT_NE(report.dump().find("material"), std::string::npos);
+        does("preview-normals " + name + " --out-dir seen --quiet");
+    }
+    EXPECT_EQ(does("transfer-normals one.glb plain.glb -o b.glb --extent 16").err, "");
+    write_squares("coarse.glb", {R"({"name":"Skin"})"}, "", {0.0f, 9.0f / 127.0f, 126.0f / 127.0f});
+    const Ran coarse = does("transfer-normals coarse.glb one.glb -o c.glb --extent 16");
+    EXPECT_NE(coarse.out.find("normals have 8 bits"), std::string::npos) << coarse.out;
+    EXPECT_EQ(does("transfer-normals one.glb coarse.glb -o d.glb --extent 16").out.find("8 bits"), std::string::npos);
+    refuses("transfer-normals plain.glb one.glb -o x.glb --material Skin", 4, "has no material \"Skin\"");
 }
 
 }  // namespace tex::cli

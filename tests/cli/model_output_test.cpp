@@ -190,9 +190,31 @@ TEST_F(ModelOutputs, UastcIsReadByViewersAndItsGrowthIsSaid) {
     }
 }
 
+// Text with its files becomes one file, and one file becomes text, with all commands that write models.
+TEST_F(ModelOutputs, TheNameDecidesTheForm) {
+    does(
+        "pack-normals m.gltf -o one.glb --y up; mkdir alone out busy alone/text; cp one.glb alone; cd alone; "
+        "pack-normals one.glb -o text/n.gltf; test -e text/n.bin; test $(ls text | wc -l) = 2");
+    for (const std::string verb :
+         {"pack-normals one.glb -o out/a.gltf", "convert-normals one.glb -o out/c.gltf --tangents mikktspace",
+          "repair-normals N802*.glb -o out/d.gltf", "convert-normals m.gltf -o out/e.glb --tangents mikktspace",
+          "transfer-normals one.glb m.gltf -o out/g.gltf --extent 16",
+          "transfer-normals m.gltf one.glb -o out/h.glb --extent 16"}) {
+        does(verb);
+        const std::string made = verb.substr(verb.find("out/"), verb.find("gl", verb.find("out/")) - verb.find("out/"));
+        does("check-normals " + made + "gl* --json > /dev/null || test $? = 1");
+    }
+    refuses("mip-normals one.glb -o out/x.glb", 2, "out/x.glb: models hold no levels");
+    // What goes into the file is an input, too.
+    does("ln maps/up.png hard.glb");
+    refuses("pack-normals m.gltf -o hard.glb", 2, "is the input");
+    refuses("pack-normals m.gltf -o x.glb --depfile maps/square.bin", 2, "maps/square.bin");
+    // What is beside the output may be anybody's.
+    scratch_.write("busy/n.bin", std::string("somebody's"));
+    refuses("pack-normals one.glb -o busy/n.gltf", 3, "exists and is not known to be a file of busy/n.gltf");
+}
+
 TEST_F(ModelOutputs, WhatCannotBeIsSaid) {
-    refuses("pack-normals N804*.glb -o x.gltf", 4, "is GLB, and so the output must be called .glb: x.gltf");
-    refuses("pack-normals m.gltf -o x.glb", 4, "is glTF as text, and so the output must be called .gltf");
     refuses("pack-normals up.png -o x.glb", 4, "up.png: is not a glTF model");
     refuses("pack-normals none.glb -o x.glb", 3, "none.glb: no such file");
     refuses("pack-normals N802*.glb N804*.glb -o x.glb", 2, "-o takes one input, 2 are given");

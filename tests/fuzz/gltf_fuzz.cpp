@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <tex/mesh.h>
@@ -16,7 +17,7 @@
 #include "fuzz/whole_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/gltf_images.h"
-#include "mesh/gltf_writer.h"
+#include "mesh/gltf_output.h"
 
 namespace {
 
@@ -65,6 +66,15 @@ void put_pictures(std::span<const std::byte> bytes, const tex::LoadBeside& load)
         return *maps;
     };
     const auto maps = maps_in(bytes, nullptr);
+    // Both forms, and back: the maps stay.
+    for (const bool is_binary : {true, false}) {
+        const auto other = tex::write_gltf(bytes, load, {true, is_binary ? "out.glb" : "out.gltf", is_binary}, {});
+        if (!other) continue;
+        expect(maps_in(other->bytes, nullptr).size() == maps.size());
+    }
+    tex::ModelChanges added;
+    added.adds_material = true;
+    std::ignore = tex::write_gltf(bytes, load, {true, "out.gltf"}, added);
     for (std::size_t k = 0; k < maps.size() && k < 3; ++k) {
         tex::ModelPicture picture{{maps[k]}, tex::Container::png, std::vector<std::byte>(5 + 7 * k, std::byte{7})};
         for (std::size_t other = k + 1; other < maps.size() && k % 2 == 0; ++other) {

@@ -49,6 +49,7 @@ NOT_BOUND = {
     "remove_unfinished_files": "for handlers of signals, which Python calls later",
     "selection_of": "select_part(material=..., uv_set=...)",
     "share_maps": "run('blend-normals', ...) shares details between many bases",
+    "share_trees": "parts are copied for each call of transfer()",
     "strength_on_ground": "HeightField.ground, which bake() applies",
     "stretch_heights": "for numpy: (heights - low) / (high - low)",
     "texel_size": "HeightField.ground, which bake() applies",
@@ -149,7 +150,7 @@ STRUCTURES = [
     ("read_image", "file.h", "ReadOptions"),
     ("bake", "types.h", "Execution"),
     ("to_object_space", "mesh.h", "ConvertOptions"),
-    ("transfer", "mesh.h", "TransferOptions"),
+    ("transfer", "transfer.h", "TransferOptions"),
 ]
 
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
+#include "rays/ray_groups.h"
 #include "unit/transfers.h"
 
 namespace tex {
@@ -285,6 +287,51 @@ TEST(TransferInputs, AreRefusedIfTheyDoNotFit) {
     EXPECT_EQ(reason(inputs), "high_details: part 0: has a normal map, but no tangents");
     inputs.high_details[0].uv_set = 1;
     EXPECT_EQ(reason(inputs), "high_details: part 0: has no such set of UVs");
+}
+
+// Trees that are kept change no map, whatever was asked for before; the same parts get the same tree.
+TEST(TransferInputs, SharedTreesChangeNothing) {
+    const MeshPart low = flat_square({16, 16});
+    std::vector<MeshPart> high = {lifted(low, 1.0f), lifted(low, 2.0f)};
+    TransferInputs plain, shared;
+    const auto same = [&](const std::vector<int>& low_groups, const std::vector<int>& high_groups) {
+        plain.low_groups = shared.low_groups = low_groups;
+        plain.high_groups = shared.high_groups = high_groups;
+        const auto a = guided(low, high, {16, 16}, plain), b = guided(low, high, {16, 16}, shared);
+        ASSERT_TRUE(a && b);
+        EXPECT_TRUE(same_maps(*a, *b));
+        EXPECT_EQ(a->rays, b->rays);
+    };
+    shared.trees = share_trees();
+    for (int k = 0; k < 2; ++k) {
+        same({}, {});
+        same({0, 0}, {0, 1});
+        same({0, 1}, {0, 1});
+    }
+    high = {lifted(low, 1.5f)};  // another mesh, perhaps at the same place
+    same({}, {});
+    plain.high_places = shared.high_places = {{0, "a"}, {0, "b", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.5}}};
+    same({}, {});
+
+    const auto first = RayGroups::make(low, high, shared, false, {}, {});
+    ASSERT_TRUE(first);
+    const auto meanwhile = RayGroups::make(low, high, shared, false, {}, {});
+    ASSERT_TRUE(meanwhile);
+    EXPECT_NE(first->whole().target, meanwhile->whole().target) << "somebody uses it";
+}
+
+TEST(TransferInputs, SharedTreesAreMadeOnce) {
+    const MeshPart low = flat_square({16, 16});
+    const std::vector<MeshPart> high = {lifted(low, 1.0f), lifted(low, 2.0f)};
+    TransferInputs inputs;
+    inputs.trees = share_trees();
+    std::vector<std::shared_ptr<const RayTarget>> targets;
+    for (int k = 0; k < 2; ++k) {
+        const auto groups = RayGroups::make(low, high, inputs, false, {}, {});
+        ASSERT_TRUE(groups);
+        targets.push_back(groups->whole().target);
+    }
+    EXPECT_EQ(targets[0], targets[1]);
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ TEST(TransferPlaces, RaysHitExactlyWhatTheyHitOnCopies) {
         for (unsigned seed = 0; seed < 6; ++seed) {
             const Scene scene = random_scene(seed);
             const RayGroups placed = groups_of(scene.parts, scene.places), copied = groups_of(scene.copies, {});
-            const TreeView a = placed.whole().tree.view(), b = copied.whole().tree.view();
+            const TreeView a = placed.whole().tree().view(), b = copied.whole().tree().view();
             ASSERT_NE(a.places, nullptr);
             ASSERT_EQ(b.places, nullptr);
             PlaceRandoms random(seed + 100);
@@ -163,7 +163,7 @@ TEST(TransferPlaces, HaveTheBoxAndTheNearestPointsOfCopies) {
     for (unsigned seed = 0; seed < 3; ++seed) {
         const Scene scene = random_scene(seed);
         const RayGroups placed = groups_of(scene.parts, scene.places), copied = groups_of(scene.copies, {});
-        const BoxTree &a = placed.whole().tree, &b = copied.whole().tree;
+        const BoxTree &a = placed.whole().tree(), &b = copied.whole().tree();
         EXPECT_EQ(a.low().x, b.low().x);
         EXPECT_EQ(a.high().y, b.high().y);
         EXPECT_EQ(a.high().z, b.high().z);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "unit/convert_maps.h"
 

@@ -15,6 +15,7 @@
 
 #include "cli/text.h"
 #include "cli/usage_error.h"
+#include "options/obj_materials.h"
 #include "tasks/name_pattern.h"
 
 namespace tex::cli {
@@ -117,6 +118,18 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
 void HighDetailOptions::amend(Task& task) const {
     for (const std::vector<Assigned>* files : {&normals_, &colors_, &alphas_}) {
         for (const Assigned& file : *files) task.own.push_back(path_of(file.pattern, task));
+    }
+}
+
+void HighDetailOptions::add_files_beside(const std::vector<std::string>& meshes, const ReadOptions& options,
+                                         std::vector<std::string>& files) const {
+    MeshReadOptions how;
+    how.reader = options;
+    for (const std::string& mesh : meshes) {
+        if (takes_alpha()) add_obj_files(mesh, files);
+        if (!takes_own() && !(takes_alpha() && has_cutouts(mesh, how))) continue;
+        for (std::string& file : files_beside_model(mesh, how))
+            if (!file.empty()) files.push_back(std::move(file));
     }
 }
 
@@ -321,7 +334,41 @@ Result<void> HighDetailOptions::read_alphas_of(Job& job, const HighParts& high, 
     return {};
 }
 
-Result<HighPictures> HighDetailOptions::read(Job& job, const HighParts& high) const {
+std::vector<FileState> HighDetailOptions::files_of(const Task& task) const {
+    std::vector<FileState> states;
+    for (const std::vector<Assigned>* files : {&normals_, &colors_, &alphas_}) {
+        for (const Assigned& file : *files) states.push_back(FileState::of(path_of(file.pattern, task)));
+    }
+    return states;
+}
+
+// What was said of them when they were read is printed once.
+Result<std::shared_ptr<const HighPictures>> HighDetailOptions::read(
+    Job& job, const std::shared_ptr<const HighParts>& high) const {
+    const bool shares = high->trees != nullptr;
+    const std::unique_lock lock = shares ? std::unique_lock(mutex_) : std::unique_lock<std::mutex>();
+    std::vector<FileState> files = shares ? files_of(job.task) : std::vector<FileState>();
+    if (shares && last_.high == high && last_.files == files) {
+        for (const FileWarning& warning : last_.warnings) job.remark(warning.message, warning.file);
+        return last_.pictures;
+    }
+    if (shares) last_ = {};
+    Job own(job.task, job.console, job.read_options, job.write_options, job.threads(),
+            [](double, const std::string&) { return true; });
+    auto read = read_all(own, *high);
+    job.take(own);
+    if (!read) return read.error();
+    auto pictures = std::make_shared<const HighPictures>(std::move(*read));
+    if (!shares) return pictures;
+    last_ = {high, std::move(files), pictures, own.warnings()};
+    last_.warnings.insert(last_.warnings.end(), own.remarks().begin(), own.remarks().end());
+    for (FileWarning& warning : last_.warnings) {
+        if (warning.file == job.task.name()) warning.file.clear();
+    }
+    return pictures;
+}
+
+Result<HighPictures> HighDetailOptions::read_all(Job& job, const HighParts& high) const {
     HighPictures pictures;
     const auto is_own = [](const std::shared_ptr<const ModelInput>& map) { return map != nullptr; };
     const auto has_alpha = [](const PartAlpha& alpha) { return alpha.mode != AlphaMode::opaque; };

@@ -7,14 +7,17 @@
 #include <functional>
 #include <list>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "options/high_meshes.h"
+#include "options/mesh_files.h"
 #include "tasks/job.h"
 
 namespace tex::cli {
@@ -46,9 +49,14 @@ public:
 
     // Adds the files to the task.
     void amend(Task& task) const;
+    // Adds the files beside these high meshes that have pictures of them.
+    void add_files_beside(const std::vector<std::string>& meshes, const ReadOptions& options,
+                          std::vector<std::string>& files) const;
 
-    // Reads the files, each once. Errors: no part has such a material; a part has no UVs.
-    [[nodiscard]] Result<HighPictures> read(Job& job, const HighParts& high) const;
+    // Reads the files, each once; jobs that share the parts share what their files hold. Any thread may call this.
+    // Errors: no part has such a material; a part has no UVs.
+    [[nodiscard]] Result<std::shared_ptr<const HighPictures>> read(Job& job,
+                                                                   const std::shared_ptr<const HighParts>& high) const;
 
 private:
     // A file, for the parts with one material or for those that nothing else is given for.
@@ -76,8 +84,20 @@ private:
     bool is_solid_ = false;
     std::optional<bool> own_;
     std::function<bool()> implies_own_;
+    [[nodiscard]] Result<HighPictures> read_all(Job& job, const HighParts& high) const;
+    [[nodiscard]] std::vector<FileState> files_of(const Task& task) const;
+
     std::optional<YAxis> y_;
     Decoder decoder_ = Decoder::gltf;
+    // What was read last for jobs that share it: with what it belongs to, and what was said of it.
+    struct Kept {
+        std::shared_ptr<const HighParts> high;
+        std::vector<FileState> files;
+        std::shared_ptr<const HighPictures> pictures;
+        std::vector<FileWarning> warnings;
+    };
+    mutable std::mutex mutex_;
+    mutable Kept last_;
 };
 
 }  // namespace tex::cli

@@ -110,6 +110,17 @@ std::vector<std::string> HighMeshes::names_of(const Task& task) const {
     return names;
 }
 
+// Tiles and materials of a low mesh are tasks of their own.
+bool HighMeshes::is_shared(const Task& task) const {
+    return is_common_ || task.is_tile_of_mesh() || task.model || task.model_output;
+}
+
+void HighMeshes::note_tasks(const std::vector<Task>& tasks) {
+    is_common_ = tasks.size() > 1 && std::all_of(tasks.begin(), tasks.end(), [&](const Task& task) {
+                     return names_of(task) == names_of(tasks.front());
+                 });
+}
+
 void HighMeshes::amend(Task& task) const {
     if (!is_given()) return;
     std::vector<std::string> meshes = names_of(task);
@@ -120,7 +131,7 @@ void HighMeshes::amend(Task& task) const {
 
 Result<std::shared_ptr<const HighParts>> HighMeshes::read(Job& job, const Wanted& wanted) const {
     const std::vector<std::string> names = names_of(job.task);
-    const bool shares = job.task.is_tile_of_mesh() || job.task.model || job.task.model_output;
+    const bool shares = is_shared(job.task);
     const std::unique_lock lock = shares ? std::unique_lock(mutex_) : std::unique_lock<std::mutex>();
     if (shares && last_ && last_->names == names && are_current(last_files_)) {
         for (const FileWarning& remark : last_->remarks) job.remark(remark.message, remark.file);
@@ -128,9 +139,16 @@ Result<std::shared_ptr<const HighParts>> HighMeshes::read(Job& job, const Wanted
     }
     if (shares) last_.reset();
     std::vector<FileState> files = states_of(shares ? names : std::vector<std::string>());
+    for (const std::string& name : names) {
+        if (!shares || !(wanted.maps || wanted.alpha)) continue;
+        MeshReadOptions how;
+        how.reader = job.read_options;
+        for (const std::string& file : files_beside_model(name, how)) files.push_back(FileState::of(file));
+    }
     auto high = read(names, job.read_options, wanted);
     if (!high) return high.error();
     for (const FileWarning& remark : high->remarks) job.warn(remark.message, remark.file);
+    if (shares) high->trees = share_trees();
     auto shared = std::make_shared<const HighParts>(std::move(*high));
     if (shares) {
         last_ = shared;

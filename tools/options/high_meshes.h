@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "options/mesh_files.h"
@@ -52,11 +52,12 @@ struct HighParts {
     std::vector<bool> has_maps;          // whether the material of a part has a normal map
     // The map, if the parts were read for it, and it is in a model: their UVs lie where it puts them. Else null.
     std::vector<std::shared_ptr<const ModelInput>> maps;
-    std::vector<PartAlpha> alphas;     // of the materials
-    std::vector<int> files;            // the number of the file
-    std::vector<PartPlace> places;     // where they stand; empty: where they are stored (TransferInputs::high_places)
-    std::vector<std::string> names;    // of the files
-    std::vector<FileWarning> remarks;  // what may matter about them
+    std::vector<PartAlpha> alphas;       // of the materials
+    std::vector<int> files;              // the number of the file
+    std::vector<PartPlace> places;       // where they stand; empty: where they are stored (TransferInputs::high_places)
+    std::vector<std::string> names;      // of the files
+    std::vector<FileWarning> remarks;    // what may matter about them
+    std::shared_ptr<SharedTrees> trees;  // of jobs that share the parts; else null
 
     // What rays tell apart: the places, or else the parts.
     [[nodiscard]] std::size_t standing() const { return places.empty() ? parts.size() : places.size(); }
@@ -92,6 +93,10 @@ public:
     void amend(Task& task) const;
     // The high meshes of a task.
     [[nodiscard]] std::vector<std::string> names_of(const Task& task) const;
+    // Whether the low mesh of a task is not the only one that the high ones are for.
+    [[nodiscard]] bool is_shared(const Task& task) const;
+    // Looks whether all tasks have the same high meshes.
+    void note_tasks(const std::vector<Task>& tasks);
 
     // What is read of the meshes besides positions and normals.
     struct Wanted {
@@ -101,7 +106,7 @@ public:
         bool alpha = false;  // likewise
     };
 
-    // Reads the meshes of a job, as the nodes of their scenes place them. Jobs for the tiles of a low mesh share them.
+    // Reads the meshes of a job, as the nodes of their scenes place them. Jobs share them if is_shared(task).
     // Any thread may call this.
     [[nodiscard]] Result<std::shared_ptr<const HighParts>> read(Job& job, const Wanted& wanted) const;
 
@@ -130,8 +135,9 @@ private:
     std::optional<Match> match_;
     MeshUnits units_;
     std::int64_t most_ = kMaxCopied;
+    bool is_common_ = false;  // all tasks have the same
     mutable std::mutex mutex_;
-    // What was read last for a tile, and the states of its files before.
+    // What was read last for jobs that share it, and the states of its files before.
     mutable std::shared_ptr<const HighParts> last_;
     mutable std::vector<FileState> last_files_;
 };

@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 #include <tex/types.h>
 
 namespace tex::cli {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "options/conversion.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <tex/format.h>
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "cli/command.h"
 #include "options/high_meshes.h"

@@ -108,6 +108,17 @@ std::vector<std::shared_ptr<const ModelInput>> maps_in(const std::string& file, 
     return maps;
 }
 
+// The material that ModelChanges::adds_material adds, if no triangle has one. Returns whether it does.
+bool add_material(Mesh& mesh) {
+    const auto has_material = [](const MeshPart& part) { return part.material >= 0; };
+    if (std::any_of(mesh.parts.begin(), mesh.parts.end(), has_material)) return false;
+    for (MeshPart& part : mesh.parts) {
+        if (!part.uvs.empty() && !part.normals.empty()) part.material = static_cast<int>(mesh.materials.size());
+    }
+    mesh.materials.emplace_back();
+    return true;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const Model>> LastModel::read(const std::string& path, Part part,
@@ -115,8 +126,10 @@ Result<std::shared_ptr<const Model>> LastModel::read(const std::string& path, Pa
     const std::lock_guard lock(mutex_);
     if (model_ && path_ == path && (part_ == part || part_ == Part::all)) return model_;
     model_.reset();
+    if (adds_material_) part = Part::all;
     auto model = part == Part::all ? read_model(path, options) : read_model_maps(path, options);
     if (!model) return model.error();
+    has_added_ = adds_material_ && add_material(model->mesh);
     path_ = path;
     part_ = part;
     model_ = std::make_shared<const Model>(std::move(*model));
@@ -189,7 +202,7 @@ std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::str
     const auto one = [&](Error error) {
         return std::vector{std::make_shared<const ModelInput>(ModelInput{.file = file, .error = std::move(error)})};
     };
-    const auto last = std::make_shared<LastModel>();
+    const auto last = std::make_shared<LastModel>(material.empty());
     const auto model = last->read(file, LastModel::Part::all, options);
     if (!model) return one(model.error());
     const auto chosen = number_of_material(**model, material);
@@ -211,7 +224,7 @@ std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::str
     if (maps.empty()) {
         return one({ErrorCode::bad_option, file,
                     *chosen ? "no triangle with this material has UVs and normals"
-                            : "no material is on triangles with UVs and normals"});
+                            : "no triangle has UVs and normals, which normal maps need"});
     }
     const std::vector<std::string> fields = fields_of(**model, maps);
     const std::vector<std::string> beside = files_beside_model(file, options);
@@ -220,6 +233,7 @@ std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::str
     for (std::size_t k = 0; k < maps.size(); ++k) {
         ModelInput input{.file = file, .material = material_of(**model, maps[k], names), .field = fields[k]};
         input.map = maps[k];
+        input.is_added = last->has_added();
         if (const ModelImage* const image = image_of(**model, maps[k]))
             input.image = image->file.empty() ? image->name : image->file;
         input.path = input.name();

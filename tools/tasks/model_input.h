@@ -22,11 +22,20 @@ class LastModel {
 public:
     enum class Part { maps, all };  // `maps`: without geometry
 
+    LastModel() = default;
+    // `adds_material`: if no triangle has a material, those with UVs and normals have another one, after those of the
+    // model (ModelChanges::adds_material). Such a model is read with its geometry.
+    explicit LastModel(bool adds_material) : adds_material_(adds_material) {}
+
     // Any thread may call this. Errors: those of read_model().
     [[nodiscard]] Result<std::shared_ptr<const Model>> read(const std::string& path, Part part,
                                                             const MeshReadOptions& options);
+    // Whether the model that was read has got another material.
+    [[nodiscard]] bool has_added() const { return has_added_; }
 
 private:
+    const bool adds_material_ = false;
+    bool has_added_ = false;
     std::mutex mutex_;
     std::string path_;
     Part part_ = Part::maps;
@@ -41,6 +50,7 @@ struct ModelInput {
     std::string image = {};     // as the model calls it, or the path of its file
     std::string path = {};      // of its file; name(), if it is inside of the model
     std::optional<ModelMap> map = {};
+    bool is_added = false;                 // the material is not in the model (ModelChanges::adds_material)
     std::optional<Error> error = {};       // the model cannot be read
     std::vector<std::string> beside = {};  // other files that the map depends on
     std::shared_ptr<LastModel> last = {};
@@ -65,7 +75,8 @@ struct ModelInput {
 [[nodiscard]] std::vector<std::string> files_beside_model(const std::string& file, const MeshReadOptions& options);
 
 // The materials of a model that are on triangles with UVs and normals, all or the one that is named, each with the
-// normal map that it has or could get: without one, ModelMap::image is -1. The transform is that of a new map. If there
+// normal map that it has or could get: without one, ModelMap::image is -1. If no triangle has a material, the only one
+// is that which ModelChanges::adds_material adds. The transform is that of a new map. If there
 // is none, the only element says why.
 [[nodiscard]] std::vector<std::shared_ptr<const ModelInput>> materials_of_model(const std::string& file,
                                                                                 const std::string& material,

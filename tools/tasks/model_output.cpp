@@ -95,6 +95,7 @@ ModelChanges ModelOutput::changes(Container container) const {
         picture.use = occlusion[k].use;
     }
     all.tangents = tangents;
+    all.adds_material = adds_material;
     return all;
 }
 
@@ -115,6 +116,7 @@ std::vector<ModelFile> set_output(Task& task, Result<ModelOutput> made, bool may
     for (const auto& group : output->images) {
         for (const auto& map : group) read.insert(map->beside.begin(), map->beside.end());
     }
+    read.insert((*files)->joined.begin(), (*files)->joined.end());
     for (const ModelFile& file : (*files)->files) {
         if (!file.from.empty()) read.insert(file.from);
         if (file.path != task.output) task.more_outputs.push_back(file.path);
@@ -158,6 +160,7 @@ Result<ModelOutput> lod_of(const std::string& input, const std::string& material
     output.is_lod = true;
     for (const auto& map : materials_of_model(input, material, options)) {
         if (map->error) return *map->error;
+        output.adds_material = map->is_added;
         output.images.push_back({map});
     }
     if (auto found = find_tangents(output, tangents, options); !found) return found.error();
@@ -266,15 +269,36 @@ Result<void> make_pictures(Job& job, ModelChanges& changes,
 
 namespace {
 
-// UASTC is small in the memory of a GPU, and often larger than PNG in the file, which surprises those who shrink
-// models.
+// Whether a map that is replaced was JPEG, and the picture that takes its place is not.
+bool had_jpeg(const Job& job, const ModelChanges& changes) {
+    const auto model = job.task.model_output->images.front().front()->read(LastModel::Part::maps, job.read_options);
+    if (!model) return false;
+    return std::any_of(changes.pictures.begin(), changes.pictures.end(), [&](const ModelPicture& picture) {
+        const int image = picture.maps.front().image;
+        if (picture.container == Container::jpeg || picture.use != PictureUse::normals || image < 0) return false;
+        const ModelImage& old = (*model)->images[static_cast<std::size_t>(image)];
+        return old.mime_type == "image/jpeg" || container_of(old.file) == Container::jpeg;
+    });
+}
+
+// UASTC is small in the memory of a GPU, and often larger than PNG in the file, and what JPEG has lost does not make
+// PNG smaller: both surprise those who shrink models.
 void warn_of_growth(Job& job, const ModelChanges& changes) {
     const bool has_uastc = std::any_of(changes.pictures.begin(), changes.pictures.end(),
                                        [](const ModelPicture& one) { return one.container == Container::ktx2; });
     std::error_code error;
     const auto size = [&](const std::string& path) { return std::filesystem::file_size(path, error); };
     const std::uintmax_t before = size(job.task.input), after = size(job.task.output);
-    if (error || !has_uastc || after <= before) return;
+    const auto is_whole = [](const std::string& name) { return lower_case(name).ends_with(".glb"); };
+    if (error || after <= before || !is_whole(job.task.input) || !is_whole(job.task.output)) return;
+    if (!has_uastc && after > before + before / 10 && had_jpeg(job, changes)) {
+        job.warn(
+            fmt::format("it has {} bytes, and {} before: its maps were JPEG, which loses detail; --max-size makes it "
+                        "smaller, --container webp somewhat, and --container jpeg keeps them JPEG",
+                        after, before),
+            job.task.output);
+    }
+    if (!has_uastc) return;
     job.warn(fmt::format("it has {} bytes, and {} before: UASTC saves memory of the GPU, not always bytes of the file; "
                          "--max-size makes it smaller, or --container webp in its place",
                          after, before),

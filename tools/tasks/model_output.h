@@ -37,6 +37,7 @@ struct ModelOutput {
     std::vector<std::vector<std::shared_ptr<const ModelInput>>> images;
     bool is_lod = false;                         // materials get maps that are made for them, and parts tangents
     bool keeps_maps = false;                     // parts get tangents alone
+    bool adds_material = false;                  // as ModelChanges
     std::vector<ModelOcclusion> occlusion = {};  // of the maps of `images`, or empty
     std::vector<ModelTangents> tangents = {};    // the parts that get tangents, without these
     std::optional<Error> error = {};             // why nothing can be written

@@ -410,6 +410,10 @@ struct StepsReport {
 // to the same places beside the output. A file that changes (a picture, a buffer with one) is written there, a picture
 // with the extension of its type. In the folder of the input, and where the name belongs to another file of the model,
 // its name begins with the stem of the output: "fixed_stone_n.png".
+//
+// The name of the output decides its form. If text becomes GLB, all of its buffers become one, in the file, and so do
+// images, but for those that cannot be read or are not in its folder. If GLB becomes text, the binary chunk with all
+// that is in it, images included, becomes a file beside it, which is called as the output: "fixed.bin".
 
 // Which slots of a material get a picture.
 enum class PictureUse {
@@ -444,6 +448,9 @@ struct ModelTangents {
 struct ModelChanges {
     std::vector<ModelPicture> pictures;
     std::vector<ModelTangents> tangents = {};  // at most one for each part
+    // Triangles with UVs and normals that have no material get one, which is called as the model's next number: maps
+    // may be for that. It is what glTF draws without a material.
+    bool adds_material = false;
 };
 
 // A file of the model that is written.
@@ -457,6 +464,7 @@ struct ModelFiles {
     std::vector<ModelFile> files;           // in the order in which they take their places; the model is the last one
     std::vector<std::string> missing = {};  // files that the model names and that do not exist: they are not copied
     std::vector<std::string> outside = {};  // URIs of what is not in its folder: they stay as they are
+    std::vector<std::string> joined = {};   // files beside the input that are in the model now: it has become GLB
     int compressed = 0;                     // parts that get no tangents, because Draco compresses them
     int mirrors = 0;                        // nodes that mirrored parts with these tangents, and no longer do
     int left_mirrors = 0;                   // nodes that still do: they have instances, or animations point at them,
@@ -465,11 +473,11 @@ struct ModelFiles {
 
 // The files that write_model() would write. The bytes of the pictures do not matter, nor do values of tangents.
 //
-// Errors: those of read_model_maps(); io (a file beside the model is no regular file); unsupported (the output is not
-// called .glb and the input is GLB, or not .gltf and the input is text; a file beside the model that would be written
-// has an extension that models do not use; there are tangents, and no buffer that can hold them); bad_option (a map is
-// not one of the model, or has no image; two pictures are for one map; another container; tangents are not those of a
-// part).
+// Errors: those of read_model_maps(); io (a file beside the model is no regular file); unsupported (the output is
+// called neither .glb nor .gltf; GLB would become text, and has chunks that text cannot hold; a file beside the model
+// that would be written has an extension that models do not use; there are tangents, and no buffer that can hold them);
+// bad_option (a map is not one of the model, or has no image; two pictures are for one map; another container; tangents
+// are not those of a part).
 [[nodiscard]] TEX_API Result<ModelFiles> model_files(const std::string& input, const std::string& output,
                                                      const ModelChanges& changes, const MeshReadOptions& options = {});
 

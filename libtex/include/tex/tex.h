@@ -47,11 +47,11 @@
 //     height.h    height_field(), deband(), strength of units, colour spaces
 //     bake.h      bake()                                mip.h       build_mip_chain(), build_roughness_chain()
 //     blend.h     scale(), blend()                      pack.h      pack(), unpack(), pack_roughness()
-//     surface.h   integrate(), curvature(), occlusion() mesh.h      meshes, models, tangents, convert, transfer()
+//     surface.h   integrate(), curvature(), occlusion() mesh.h      meshes, models, tangents, convert
 //     file.h      reading, writing, probing             pipeline.h  bake_file(), pack_file(), steps, write_model()
 //     check.h     check(), compare(), heat_map()        preview.h   preview(), contact sheets, animations
 //     repair.h    repair()                              transcode.h transcode()
-//     tex_c.h     the same for C, Rust and C#
+//     transfer.h  transfer()                            tex_c.h     the same for C, Rust and C#
 //
 // Options stand beside their verb. Everything is in the inline namespace v1. Its number is that of the shared library
 // (libtex.so.1): both change with the binary interface, so that no program links to one that it was not built for.
@@ -79,6 +79,7 @@
 #include <tex/repair.h>
 #include <tex/surface.h>
 #include <tex/transcode.h>
+#include <tex/transfer.h>
 #include <tex/types.h>
 
 namespace tex::inline v1 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// mesh_fields.h: the fields of mesh.h.
+// mesh_fields.h: the fields of mesh.h and transfer.h.
 
 #pragma once
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "fields/field.h"
 

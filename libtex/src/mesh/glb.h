@@ -20,4 +20,7 @@ namespace tex::inline v1 {
 Result<std::vector<std::byte>> with_chunks(std::span<const std::byte> file, const GltfChunks& chunks, std::string json,
                                            const std::optional<std::vector<std::byte>>& binary);
 
+// A GLB file. Errors: unsupported (it would be too long).
+Result<std::vector<std::byte>> glb_of(std::string json, const std::vector<std::byte>& binary);
+
 }  // namespace tex::inline v1

@@ -18,7 +18,8 @@ namespace tex::inline v1 {
 // Where the output is, as seen from the input.
 struct ModelPlace {
     bool is_same_folder = false;
-    std::string name;  // of the output, without its folder
+    std::string name;        // of the output, without its folder
+    bool is_binary = false;  // the output is GLB
 };
 
 // The URI of a relative path.

@@ -331,13 +331,13 @@ Result<WrittenGltf> write_changes(std::span<const std::byte> file, const GltfChu
     if (auto made = writer.change(); !made) return made.error();
     auto bytes = with_chunks(file, chunks, text.text(), writer.binary());
     if (!bytes) return bytes.error();
-    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside(), writer.compressed()};
+    return WrittenGltf{std::move(*bytes), writer.take_beside(), writer.outside(), {}, writer.compressed()};
 }
 
 }  // namespace
 
-Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
-                               const ModelChanges& changes) {
+Result<WrittenGltf> write_same_form(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
+                                    const ModelChanges& changes) {
     auto chunks = gltf_chunks(file);
     if (!chunks) return chunks.error();
     auto document = JsonDocument::parse(chunks->json);

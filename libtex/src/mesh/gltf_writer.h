@@ -29,13 +29,13 @@ struct WrittenGltf {
     std::vector<std::byte> bytes;
     std::vector<BesideModel> beside;
     std::vector<std::string> outside;   // GltfNames::outside()
+    std::vector<std::string> joined;    // relative paths from the input: ModelFiles::joined
     int compressed = 0;                 // ModelFiles::compressed
     int mirrors = 0, left_mirrors = 0;  // those of ModelFiles
 };
 
-// The file with these changes, as model output in pipeline.h describes. If the output is in the folder of the input,
-// copies are left out. Errors: those of read_model_maps(), `load`; bad_option, unsupported as write_model().
-Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
-                               const ModelChanges& changes);
+// write_gltf() of gltf_output.h in the form of the file, without another material.
+Result<WrittenGltf> write_same_form(std::span<const std::byte> file, const LoadBeside& load, const ModelPlace& place,
+                                    const ModelChanges& changes);
 
 }  // namespace tex::inline v1

@@ -159,7 +159,7 @@ Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& tr
         BothWorks works;
         for (int k = begin; k < end && !costly.is_before(piece); ++k) {
             const std::size_t triangle = triangles[static_cast<std::size_t>(k) * step];
-            see_triangle(low, triangle, directions, group.tree, most, sides, works);
+            see_triangle(low, triangle, directions, group.tree(), most, sides, works);
             if (!works.low.is_fair()) return costly.see(piece, RaySide::low);
             if (!works.high.is_fair()) return costly.see(piece, RaySide::high);
         }
@@ -171,7 +171,7 @@ Result<void> see_group(const MeshPart& low, const std::vector<std::uint32_t>& tr
     const auto low_tree = BoxTree::build(Triangles({&part}), execution);
     if (!low_tree) return low_tree.error();
     const LowSide side{part, *low_tree, triangles, directions};
-    for (const StandingVertices& high : vertices_of(group.triangles)) {
+    for (const StandingVertices& high : vertices_of(group.triangles())) {
         const auto from_high = [&](int begin, int end) {
             const int piece = begin / kVerticesPerPiece;
             if (costly_back.is_before(piece)) return;
@@ -205,7 +205,7 @@ double distance_between(const MeshPart& low, const RayGroups& groups) {
     for (std::size_t c = 0; c < low.indices.size() && work.is_fair(); ++c) {
         const int group = groups.of_low(c / 3);
         if (group == RayGroups::kNone) continue;
-        const BoxTree& high = groups.all()[static_cast<std::size_t>(group)].tree;
+        const BoxTree& high = groups.all()[static_cast<std::size_t>(group)].tree();
         const NearestPoint nearest = high.nearest(vector_of(low.positions[low.indices[c]]), squared);
         work.add(1, nearest.steps);
         squared = std::min(squared, nearest.squared);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// found_reach.h: how far rays must reach: automatic `front` and `back` of mesh.h.
+// found_reach.h: how far rays must reach: automatic `front` and `back` of transfer.h.
 
 #pragma once
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "rays/triangles.h"
 
@@ -20,7 +20,7 @@ public:
 
     using Weights = std::array<double, 3>;
 
-    // The normal at the triangle: see mesh.h. Of unit length.
+    // The normal at the triangle: see transfer.h. Of unit length.
     [[nodiscard]] Vector3 normal_at(const Triangles::Triangle& triangle, const Weights& weights) const;
     // Whether it is mixed from the normals of the corners alone.
     [[nodiscard]] bool mixes_normals(const Triangles::Triangle& triangle) const {
@@ -57,7 +57,7 @@ private:
     bool has_colors_ = false, has_cutouts_ = false;
 };
 
-// Errors: bad_option, if ids and details do not fit the parts (mesh.h).
+// Errors: bad_option, if ids and details do not fit the parts (transfer.h).
 Result<void> check_details(const TransferInputs& inputs, const std::vector<MeshPart>& high);
 
 }  // namespace tex::inline v1

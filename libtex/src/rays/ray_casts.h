@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "rays/box_tree.h"
 #include "rays/cutouts.h"

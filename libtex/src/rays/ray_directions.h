@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ray_directions.h: the directions in which rays leave the low mesh: RayMode of mesh.h.
+// ray_directions.h: the directions in which rays leave the low mesh: RayMode of transfer.h.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "kernels/corner_vectors.h"
 #include "rays/box_tree.h"

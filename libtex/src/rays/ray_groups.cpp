@@ -6,7 +6,6 @@
 #include <iterator>
 #include <utility>
 
-#include "rays/part_trees.h"
 #include "rows/usable.h"
 
 namespace tex::inline v1 {
@@ -23,40 +22,16 @@ std::vector<int> common_numbers(const TransferInputs& inputs) {
     return both;
 }
 
+// The parts or places with a number, or all of them.
+std::vector<std::size_t> chosen(std::size_t count, const std::vector<int>& numbers, int number) {
+    std::vector<std::size_t> chosen;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (numbers.empty() || numbers[k] == number) chosen.push_back(k);
+    }
+    return chosen;
+}
+
 }  // namespace
-
-// Parts that stand where they are stored, and nowhere else, have no placement.
-Result<void> RayGroups::place(const std::vector<MeshPart>& high, const TransferInputs& inputs) {
-    std::vector<std::size_t> counts(high.size());
-    for (const PartPlace& place : inputs.high_places) ++counts[place.part];
-    placements_.reserve(inputs.high_places.size());  // pointers stay good
-    for (std::size_t k = 0; k < inputs.high_places.size(); ++k) {
-        const PartPlace& place = inputs.high_places[k];
-        auto placement = NodeTransform::make(place.name, place.to_scene);
-        if (!placement) return placement.error();
-        StandingPart standing{&high[place.part], nullptr, k};
-        if (counts[place.part] > 1 || !placement->is_identity())
-            standing.placement = &placements_.emplace_back(*placement);
-        places_.push_back(standing);
-    }
-    return {};
-}
-
-// Takes those with a number, or all of them.
-Triangles RayGroups::triangles_of(const std::vector<MeshPart>& high, const std::vector<int>& numbers,
-                                  int number) const {
-    const auto belongs = [&](std::size_t k) { return numbers.empty() || numbers[k] == number; };
-    std::vector<const MeshPart*> parts;
-    std::vector<StandingPart> places;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-        if (belongs(k)) places.push_back(places_[k]);
-    }
-    if (!places_.empty()) return Triangles(std::move(places));
-    for (std::size_t k = 0; k < high.size(); ++k) {
-        if (belongs(k)) parts.push_back(&high[k]);
-    }
-    return Triangles(std::move(parts));
-}
 
 Result<RayGroups> RayGroups::make(const MeshPart& low, const std::vector<MeshPart>& high, const TransferInputs& inputs,
                                   bool whole, const Execution& execution, ProgressSpan span) {
@@ -67,33 +42,28 @@ Result<RayGroups> RayGroups::make(const MeshPart& low, const std::vector<MeshPar
     const std::vector<int> numbers = common_numbers(inputs);
     if (numbers.empty()) return bad_option("no part of the high mesh belongs to one of the low mesh");
     RayGroups made;
-    if (auto placed = made.place(high, inputs); !placed) return placed.error();
-    std::size_t count = made.places_.empty() ? stored : 0;
-    for (const StandingPart& place : made.places_) count += place.part->triangles();
-    if (count >= kNoHit)
+    made.trees_ = SharedTrees::take(inputs.trees);
+    SharedTrees& trees = *made.trees_;
+    if (auto set = trees.set(high, inputs.high_places); !set) return set.error();
+    if (trees.triangles() >= kNoHit)
         return Error{ErrorCode::unsupported, {}, "the high mesh has more than 2^32 - 2 triangles in all its places"};
-    PartTrees shared;
-    const auto build = [&](const Triangles& triangles, const Execution& with, ProgressSpan part) {
-        return made.places_.empty() ? BoxTree::build(triangles, with, part)
-                                    : BoxTree::build_places(triangles, shared, with, part);
-    };
     const Execution quiet = execution.quiet();
+    const bool is_one = numbers.size() == 1;
     for (const int number : numbers) {
-        Triangles triangles = made.triangles_of(high, inputs.high_groups, number);
-        auto tree = numbers.size() == 1 ? build(triangles, execution, span) : build(triangles, quiet, {});
-        if (!tree) return tree.error();
-        made.groups_.push_back(RayGroup{number, std::move(triangles), std::move(*tree)});
+        auto target = trees.tree_of(chosen(trees.standing(), inputs.high_groups, number), is_one ? execution : quiet,
+                                    is_one ? span : ProgressSpan{});
+        if (!target) return target.error();
+        made.groups_.push_back(RayGroup{number, std::move(*target)});
     }
     for (std::size_t t = 0; t < low.triangles() && !inputs.low_groups.empty(); ++t) {
         const auto found = std::lower_bound(numbers.begin(), numbers.end(), inputs.low_groups[t]);
         const bool has_group = found != numbers.end() && *found == inputs.low_groups[t];
         made.of_low_.push_back(has_group ? static_cast<int>(found - numbers.begin()) : kNone);
     }
-    if (whole && made.groups_.front().triangles.count() != count) {
-        Triangles triangles = made.triangles_of(high, {}, 0);
-        auto tree = build(triangles, quiet, {});
-        if (!tree) return tree.error();
-        made.whole_.emplace(RayGroup{kNone, std::move(triangles), std::move(*tree)});
+    if (whole && made.groups_.front().triangles().count() != trees.triangles()) {
+        auto target = trees.tree_of(chosen(trees.standing(), {}, 0), quiet, {});
+        if (!target) return target.error();
+        made.whole_.target = std::move(*target);
     }
     return made;
 }

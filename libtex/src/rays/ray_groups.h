@@ -4,21 +4,22 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
-#include "mesh/node_transform.h"
-#include "rays/box_tree.h"
+#include "rays/shared_trees.h"
 
 namespace tex::inline v1 {
 
 // Parts of the high mesh that belong together.
 struct RayGroup {
     int number;
-    Triangles triangles;
-    BoxTree tree;
+    std::shared_ptr<const RayTarget> target;
+
+    [[nodiscard]] const Triangles& triangles() const { return target->triangles; }
+    [[nodiscard]] const BoxTree& tree() const { return target->tree; }
 };
 
 class RayGroups {
@@ -37,18 +38,13 @@ public:
     // Whether every triangle is of group 0.
     [[nodiscard]] bool has_all() const { return of_low_.empty(); }
     // Precondition: make() was asked for it, or there is one group.
-    [[nodiscard]] const RayGroup& whole() const { return whole_ ? *whole_ : groups_.front(); }
+    [[nodiscard]] const RayGroup& whole() const { return whole_.target ? whole_ : groups_.front(); }
 
 private:
-    Result<void> place(const std::vector<MeshPart>& high, const TransferInputs& inputs);
-    [[nodiscard]] Triangles triangles_of(const std::vector<MeshPart>& high, const std::vector<int>& numbers,
-                                         int number) const;
-
-    std::vector<NodeTransform> placements_;
-    std::vector<StandingPart> places_;  // if parts have any, which refer to `placements_`
+    std::shared_ptr<SharedTrees> trees_;  // to which the groups refer
     std::vector<RayGroup> groups_;
     std::vector<int> of_low_;  // empty: all are of group 0
-    std::optional<RayGroup> whole_;
+    RayGroup whole_{kNone, nullptr};
 };
 
 }  // namespace tex::inline v1

@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "rays/ray_casts.h"
 #include "rays/ray_directions.h"
@@ -43,7 +43,7 @@ private:
     double slack_;  // beyond a cage, so that rays meet what lies on it
 };
 
-// Errors: bad_option, if the inputs do not fit the meshes (mesh.h); bad_data, as check_part(cage).
+// Errors: bad_option, if the inputs do not fit the meshes (transfer.h); bad_data, as check_part(cage).
 Result<void> check_inputs(const TransferInputs& inputs, const MeshPart& low, std::size_t high_parts, RayMode rays);
 
 }  // namespace tex::inline v1

@@ -18,11 +18,11 @@ constexpr std::uint32_t kInwards = 0x68bc21ebU;
 
 SecondRays::SecondRays(const RayGroup& whole, const HighSurface& surface, const TransferOptions& options,
                        double distance)
-    : cutouts_(whole.triangles, whole.tree, surface), hemisphere_(options.rays_per_hit),
+    : cutouts_(whole.triangles(), whole.tree(), surface), hemisphere_(options.rays_per_hit),
       looks_out_(options.occlusion || options.bent), looks_in_(options.thickness), limit_(distance) {
-    const Vector3 across = whole.tree.high() - whole.tree.low();
+    const Vector3 across = whole.tree().high() - whole.tree().low();
     length_ = std::min(limit_, 2.0 * std::sqrt(dot(across, across)));  // nothing is farther away
-    lift_ = kLift * whole.tree.largest_coordinate();
+    lift_ = kLift * whole.tree().largest_coordinate();
 }
 
 void SecondRays::start(const HitPoint& place, double side, std::uint32_t seed, Facing facing, Scratch& scratch) const {

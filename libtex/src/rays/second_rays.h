@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// second_rays.h: what is seen from the places that rays have hit: occlusion, bent normals, thickness (mesh.h).
+// second_rays.h: what is seen from the places that rays have hit: occlusion, bent normals, thickness (transfer.h).
 
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "rays/cutouts.h"
 #include "rays/hemisphere.h"

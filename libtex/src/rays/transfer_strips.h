@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include <tex/mesh.h>
+#include <tex/transfer.h>
 
 #include "kernels/corner_vectors.h"
 #include "mesh/coverage.h"
