@@ -147,7 +147,8 @@ bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double
             found.form = form;
         }
     }
-    return found.error <= (least < kFits ? kMostMore * least + kMostMoreCodes : as_stored);
+    const bool is_strict = least < kFits || roundness(found.curve) > 1;
+    return found.error <= (is_strict ? kMostMore * least + kMostMoreCodes : as_stored);
 }
 
 double least_error(const ToneTexels& texels) {
@@ -198,7 +199,7 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (!is_one_curve || middle < 0.15 || middle > 0.85 || stored.extent().texels() < kLeastToneTexels)
         return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
-    if (has_coarse_middle(texels)) return std::nullopt;
+    if (has_coarse_middle(texels, middle)) return std::nullopt;
     const double as_stored = least_error(texels);
     const std::vector<ToneCurve> usual = usual_tones(centre);
     const CodeComb comb(stored, background);
@@ -211,10 +212,11 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     const BestTone fits = best_of_forms(middle, true, texels);
     if (in_codes.is_proof()) {
         ToneCandidate found{nearest_middle(in_codes, comb, centre)};
-        if (agrees(found, texels, fits.best().error, as_stored) && shows(found.curve, found.form)) {
+        const bool is_shown = shows(found.curve, found.form) || in_codes.score >= kSureScore;
+        if (is_shown && agrees(found, texels, fits.best().error, as_stored)) {
             // Codes show a contrast, and which brightness went with it only as far as that is a round number.
-            const bool is_cut =
-                roundness(found.curve) > 1 && share_uncut(found.curve, texels, found.form) < kLeastUncut;
+            const bool is_cut = share_uncut(found.curve, texels, found.form) < kLeastUncut &&
+                                (roundness(found.curve) > 1 || off <= kFarOffMiddle);
             return ToneFit{found.curve, as_stored, found.error, as_stored, true, is_cut};
         }
     }

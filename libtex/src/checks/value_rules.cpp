@@ -168,8 +168,8 @@ void check_channels(const CheckContext& context, Findings& findings) {
         if (blue == 1.0f) find_levels_of(context, true, finding);  // which may have cut all of z off
         if (blue == 1.0f && !finding.tone && has_gaps_of_contrast(context)) {
             finding.confidence = kUnsure;
-            finding.message += ", and the histograms of x and y have gaps: a contrast cut z off, and rebuilding it from "
-                               "x and y that are too long makes them worse";
+            finding.message += ", and the histograms of x and y have gaps, as after a contrast that cut z off";
+            finding.fix_harms = "z that is rebuilt from x and y of too great a contrast makes vectors worse";
         }
     }
     if (counts[Property::red_not_one].count > 0) {

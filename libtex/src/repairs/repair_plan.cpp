@@ -184,7 +184,6 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
             // What a contrast cut off follows from x and y once these are shorter again, and not before.
             if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}};
-            if (finding.confidence < kSurely) return {};
             break;
         case undo_tone:
             if (!finding.tone || z < 0) return {};

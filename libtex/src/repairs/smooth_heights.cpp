@@ -171,8 +171,8 @@ Result<void> smooth_heights(StoredLevels& levels, double step, const Execution& 
     for (int j = 0; j < extent.height; ++j) {
         for (int i = 0; i < extent.width; ++i) {
             const float p = scale * surface->rise(i, j, true), q = y_sign * scale * surface->rise(i, j, false);
-            const float moved = std::max(std::abs(p - slopes.p.at(i, j)), std::abs(q - slopes.q.at(i, j)));
-            if (!(moved <= kMostMoved * scale)) continue;
+            const auto is_near = [&](float now, float before) { return std::abs(now - before) <= kMostMoved * scale; };
+            if (!is_near(p, slopes.p.at(i, j)) || !is_near(q, slopes.q.at(i, j))) continue;  // nor is NaN
             const float length = std::sqrt(1.0f + p * p + q * q);
             planes[static_cast<std::size_t>(x)].at(i, j) = code(-p / length);
             planes[static_cast<std::size_t>(y)].at(i, j) = code(-q / length);
