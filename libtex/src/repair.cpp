@@ -120,8 +120,11 @@ private:
             const bool has_errors = std::any_of(report_.findings.begin(), report_.findings.end(),
                                                 [](const Finding& f) { return f.severity == Severity::error; });
             // The rules must have found the other one.
-            const auto proofs = std::count_if(done.steps.begin(), done.steps.end(), [](const RepairStep& s) {
-                return s.rule->id != "N214" && s.rule->id != "N213" && proves(s.kind);
+            // A z that was rebuilt from x and y agrees with any curve.
+            const bool is_curve = takes_curve_back(step.kind);
+            const auto proofs = std::count_if(done.steps.begin(), done.steps.end(), [&](const RepairStep& s) {
+                return s.rule->id != "N214" && s.rule->id != "N213" && proves(s.kind) &&
+                       !(is_curve && s.kind == RepairKind::rebuild_z);
             });
             const bool is_right = !has_errors && proofs > 0;
             if (is_right) return {};
@@ -215,8 +218,10 @@ private:
             levels = std::move(*decoded);
         }
         State state;
+        const Finding* const before = find_finding(report_, step.rule->id);
+        const double figure = before ? before->figure : 0.0;
         if (changes_texels(step.kind)) {
-            if (auto applied = apply_step(step, options_, current(), levels, execution_); !applied)
+            if (auto applied = apply_step(step, figure, options_, current(), levels, execution_); !applied)
                 return applied.error();
             if (step.kind == RepairKind::invert && (step.rule->id == "N401" || step.rule->id == "N112")) {
                 levels.head.y_axis = *options_.checks.require.y;
@@ -233,8 +238,7 @@ private:
         }
         auto report = check(file_, state.texture, checks_, execution_);
         if (!report) return report.error();
-        const Finding* const before = find_finding(report_, step.rule->id);
-        if (!is_gone(*report, step, before ? before->figure : 0.0) || contradicts(step, *report))
+        if (!is_gone(*report, step, figure) || contradicts(step, *report))
             return std::optional<State>();
         const auto degrees = mean_change(current(), state.texture, execution_);
         if (!degrees) return degrees.error();

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -84,6 +87,75 @@ TEST(Repair, TakesNothingBackThatItsMakerMeant) {
     expect_no_worse([](double c) { return (c - 0.01) / 0.99; }, kRounding);
     for (const double levels : {8.0, 16.0})
         expect_no_worse([levels](double c) { return std::floor(c * (levels - 1.0) + 0.5) / (levels - 1.0); }, 0.5);
+}
+
+// The whole range of a map that is nearly flat, as `convert -normalize` stretches it: z is cut off everywhere, so that
+// the gaps of the histogram alone show the numbers. They are no proof.
+TEST(Repair, TakesAStretchBackThatCutZOffOnlyIfAsked) {
+    const Codes flat = reference::codes_of(bumps(3.0f));
+    const auto stretched = [&](double black, double white) {
+        Codes codes = flat;
+        for (unsigned char& code : codes.values)
+            code = static_cast<unsigned char>(
+                std::floor(std::clamp((code - black) / (white - black), 0.0, 1.0) * 255.0 + 0.5));
+        return reference::texture_of(codes);
+    };
+    const Texture plain = reference::texture_of(flat);
+    RepairOptions likely;
+    likely.likely = true;
+    for (const auto& [black, white] : {std::pair(91.0, 173.0), std::pair(84.0, 166.0)}) {
+        const Texture damaged = stretched(black, white);
+        EXPECT_TRUE(repaired(damaged).steps.empty()) << black << " " << plan_of(repaired(damaged));
+        const Repaired done = repaired(damaged, likely);
+        ASSERT_TRUE(done.texture) << black;
+        EXPECT_LT(angle(*done.texture, plain), 0.05 * angle(damaged, plain)) << plan_of(done);
+    }
+    // Both ends alike leave the middle where it is. Rebuilding z from x and y that are too long makes them worse.
+    const Texture damaged = stretched(85.3, 169.7);
+    EXPECT_TRUE(repaired(damaged).steps.empty()) << plan_of(repaired(damaged));
+    const Repaired done = repaired(damaged, likely);
+    ASSERT_TRUE(done.texture);
+    EXPECT_LT(angle(*done.texture, plain), 0.05 * angle(damaged, plain)) << plan_of(done);
+}
+
+// Every code as often as any other: nothing of a curve is left, least of all that of sRGB.
+TEST(Repair, AnEqualizedMapIsLeft) {
+    Codes codes = reference::codes_of(bumps(3.0f));
+    std::vector<double> below(257);
+    for (const unsigned char code : codes.values) below[code + 1u] += 1.0;
+    for (std::size_t k = 1; k < below.size(); ++k) below[k] += below[k - 1];
+    for (unsigned char& code : codes.values)
+        code = static_cast<unsigned char>(255.0 * (below[code + 1u] - below[1]) / (below[256] - below[1]));
+    RepairOptions likely;
+    likely.likely = true;
+    const Repaired done = repaired(reference::texture_of(codes), likely);
+    for (const RepairStep& step : done.steps) EXPECT_NE(step.kind, RepairKind::encode_srgb) << plan_of(done);
+    for (const Finding& finding : done.before.findings) EXPECT_NE(finding.rule->id, "N301");
+}
+
+// What 8 bits held is known by its values after a change that 16 bits hold.
+TEST(Repair, TakesChangesBackThatWereStoredWith16Bits) {
+    const auto changed = [](auto&& by) {
+        Texture texture;
+        texture.format = *format_of(SampleKind::unorm, 16, 3);
+        Level level{clean().extent, {}};
+        for (const unsigned char code : clean().values) {
+            const double c = std::clamp(by(code / 255.0), 0.0, 1.0);
+            const auto value = static_cast<unsigned>(std::floor(c * 65535.0 + 0.5));
+            level.bytes.push_back(static_cast<std::byte>(value & 255u));
+            level.bytes.push_back(static_cast<std::byte>(value >> 8));
+        }
+        texture.levels.push_back(std::move(level));
+        return texture;
+    };
+    RepairOptions likely;
+    likely.likely = true;
+    const auto plan = [&](auto&& by) { return plan_of(repaired(changed(by), likely)); };
+    EXPECT_EQ(plan([](double c) { return c; }), "");
+    EXPECT_EQ(plan([](double c) { return std::pow(c, 1.0 / 1.13); }), "N314 take gamma 1.130 back");
+    EXPECT_EQ(plan([](double c) { return (c - 0.05) / 0.95; }), "N314 take levels from 5.0 % to 100.0 % back");
+    EXPECT_EQ(plan([](double c) { return (c - 0.03) / 0.94; }).substr(0, 42),
+              "N201 take levels from 3.0 % to 97.0 % back");
 }
 
 }  // namespace tex::repaired_maps

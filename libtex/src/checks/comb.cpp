@@ -95,7 +95,7 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
                 const float code = 255.0f * row[i];
                 const int whole = code >= 0.0f && code <= 255.0f ? static_cast<int>(code + 0.5f) : -1;
                 if (whole < 0 || std::abs(code - static_cast<float>(whole)) > 1e-3f) {
-                    codes_ = 0;
+                    collect_values(stored, background, alpha);
                     return;
                 }
                 ++texels[static_cast<std::size_t>(whole)];
@@ -115,7 +115,48 @@ CodeComb::CodeComb(const Stored& stored, const Background* background) {
     }
 }
 
+// What was stored with 8 bits, changed and stored with 16 has few values, and the right curve makes codes of 8 bits of
+// all of them.
+void CodeComb::collect_values(const Stored& stored, const Background* background, const Plane<float>* alpha) {
+    constexpr float kTop = 65535.0f, kOnCode = 0.02f;
+    codes_ = 0;
+    for (const Component component : {Component::x, Component::y}) {
+        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
+        std::vector<bool> is_used(static_cast<std::size_t>(kTop) + 1);
+        int used = 0;
+        for (int j = 0; j < stored.extent().height; ++j) {
+            for (int i = 0; i < stored.extent().width; ++i) {
+                if ((background != nullptr && background->holds(i, j)) ||
+                    (alpha != nullptr && alpha->at(i, j) < 1.0f))
+                    continue;
+                const float code = kTop * plane.at(i, j);
+                if (!(code >= 0.0f && code <= kTop)) return values_.clear();
+                const auto whole = static_cast<std::size_t>(code + 0.5f);
+                if (std::abs(code - static_cast<float>(whole)) > kOnCode) return values_.clear();
+                if (is_used[whole]) continue;
+                is_used[whole] = true;
+                if (++used > kCodes) return values_.clear();
+            }
+        }
+        // Those at the ends may have been cut off.
+        for (std::size_t k = 1; k + 1 < is_used.size(); ++k) {
+            if (is_used[k]) values_.push_back(static_cast<double>(k) / static_cast<double>(kTop));
+        }
+    }
+    if (fit_values({}).score > 0.0) values_.clear();  // they are codes of 8 bits as they are
+    codes_ = static_cast<int>(values_.size());
+}
+
+CombFit CodeComb::fit_values(const ToneCurve& curve) const {
+    constexpr double kLeastOnCodes = 0.8;  // the mean cosine: chance makes 0.1 of it
+    double sum = 0.0;
+    for (const double value : values_) sum += math::cos(2.0 * math::kPi * 255.0 * undone(curve, value));
+    const double mean = values_.empty() ? 0.0 : sum / static_cast<double>(values_.size());
+    return {curve, mean < kLeastOnCodes ? 0.0 : mean, codes_};
+}
+
 CombFit CodeComb::fit(const ToneCurve& curve) const {
+    if (!values_.empty()) return fit_values(curve);
     const bool is_shift = curve.gamma == 1.0 && std::abs(curve.white - curve.black - 1.0) < 1e-9;
     if (codes_ == 0 || is_shift) return {curve};  // a shift leaves no gaps
     constexpr double kHalf = 0.5, kCut = 1e-6;
@@ -218,15 +259,34 @@ std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {
         add({-k / 255.0, 1.0 - k / 255.0, 1.0});
         add({k / 255.0, 1.0 + k / 255.0, 1.0});
     }
+    // The contrast of GIMP and ImageMagick: the tangent of an angle, in shares of 127 and of 100.
+    for (const int top : {100, 127}) {
+        for (int k = 1; 2 * k <= top; ++k) {
+            const double angle = 0.25 * math::kPi * (1.0 + static_cast<double>(k) / top);
+            const double span = math::cos(angle) / math::sin(angle);
+            add({0.5 - 0.5 * span, 0.5 + 0.5 * span, 1.0});
+        }
+    }
+    // People set levels in percent or codes, and cut little off. Programs that stretch a picture to its own darkest and
+    // lightest codes make any contrast of maps that are nearly flat.
+    constexpr double kLeastByPeople = 0.5, kLeastSpan = 0.2, kMiddle = 0.48;
     for (const int top : {100, 255}) {
-        for (int black = 0; black <= 2 * top / 5; ++black) {
-            for (int white = 3 * top / 5; white <= top; ++white) {
-                if ((black == 0 && white == top) || 2 * (white - black) < top) continue;
+        const double least = top * (top == 100 ? kLeastByPeople : kLeastSpan);
+        const int darkest = static_cast<int>(top * (top == 100 ? 0.4 : kMiddle));
+        for (int black = 0; black <= darkest; ++black) {
+            for (int white = top - darkest; white <= top; ++white) {
+                if ((black == 0 && white == top) || white - black < least) continue;
                 if (top == 255 && black % 51 == 0 && white % 51 == 0) continue;  // in percent, too
                 add({static_cast<double>(black) / top, static_cast<double>(white) / top, 1.0});
             }
         }
     }
+    return curves;
+}
+
+std::vector<ToneCurve> even_contrasts() {
+    std::vector<ToneCurve> curves;
+    for (int k = 500; k < 980; ++k) curves.push_back({0.5 - 0.0005 * k, 0.5 + 0.0005 * k, 1.0});
     return curves;
 }
 

@@ -35,7 +35,8 @@ public:
     static constexpr int kCodes = 256;
     using Counts = std::array<double, kCodes>;
 
-    // Counts the codes of x and y. If these are no codes of 8 bits, no curve fits.
+    // Counts the codes of x and y. If these are no codes of 8 bits, and 16 bits hold no 256 values that were, no curve
+    // fits.
     CodeComb(const Stored& stored, const Background* background);
 
     [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
@@ -48,6 +49,8 @@ public:
 private:
     [[nodiscard]] double correlation(const Counts& shares) const;
     [[nodiscard]] double gap_evidence(const Counts& shares) const;
+    void collect_values(const Stored& stored, const Background* background, const Plane<float>* alpha);
+    [[nodiscard]] CombFit fit_values(const ToneCurve& curve) const;
 
     struct Channel {
         std::array<double, kCodes> relative{};  // the count of a code over the mean about it
@@ -55,6 +58,7 @@ private:
         std::array<bool, kCodes> is_empty{};    // whether no texel has it
     };
     std::array<Channel, 2> channels_;
+    std::vector<double> values_;  // of 16 bits
     int codes_ = 0;
 };
 
@@ -64,6 +68,9 @@ inline constexpr double kUsualMiddle = 0.02;
 // hundredths and their inverses; opacity over black and brightness in percent; levels in percent and in codes of 8
 // bits.
 [[nodiscard]] std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off = kUsualMiddle);
+
+// Contrasts of any size that leave the middle where it is.
+[[nodiscard]] std::vector<ToneCurve> even_contrasts();
 
 // How round the numbers of such a curve are: 0 for gamma in tenths and for levels in steps of 5 % at one end or at both
 // alike.

@@ -117,7 +117,9 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     finding.unit = is_gamma ? "gamma" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
     constexpr double kClearlyBetter = 0.7, kClear = 0.99, kUnclear = 0.9;
-    finding.confidence = fit->is_in_codes || fit->error < kClearlyBetter * fit->other ? kClear : kUnclear;
+    const bool is_clear = fit->is_in_codes || fit->error < kClearlyBetter * fit->other;
+    finding.confidence = is_clear && !fit->is_cut ? kClear : kUnclear;
+    if (fit->is_cut) finding.message += "; z was cut off nearly everywhere, and does not confirm these numbers";
     finding.tone = curve;
 }
 
@@ -148,6 +150,10 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
             return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
         });
         if (restored >= as_stored) return;
+        // The curve leaves z of 1 where it is, and x and y that vary would have another z: a contrast cut it off.
+        const auto z = static_cast<std::size_t>(context.stored.channel(Component::z));
+        if (dark && context.counts.low[z] == 1.0f && restored > kUnitAfterDivision)
+            return check_tone(context, centre, findings);
     }
     Finding& finding =
         findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +

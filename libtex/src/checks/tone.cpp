@@ -147,7 +147,8 @@ bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double
             found.form = form;
         }
     }
-    return found.error <= (least < kFits ? kMostMore * least + kMostMoreCodes : as_stored);
+    const bool is_strict = least < kFits || roundness(found.curve) > 1;
+    return found.error <= (is_strict ? kMostMore * least + kMostMoreCodes : as_stored);
 }
 
 double least_error(const ToneTexels& texels) {
@@ -171,6 +172,25 @@ std::optional<ToneFit> sure_tone(const CodeComb& comb, const Centre& centre, con
     return ToneFit{in_codes.curve, as_stored, error, as_stored, true};
 }
 
+// A contrast leaves the same gaps with some other brightness, and numbers that are not round say nothing against it.
+// The one that brings x and y nearest to the middle.
+ToneCurve nearest_middle(const CombFit& found, const CodeComb& comb, const Centre& centre) {
+    constexpr int kMostShift = 8;  // codes
+    constexpr double kAlike = 0.05;
+    ToneCurve best = found.curve;
+    if (best.gamma != 1.0 || roundness(best) < 2) return best;
+    const auto off = [&](const ToneCurve& curve) {
+        return std::abs(undone(curve, centre.x) - 0.5) + std::abs(undone(curve, centre.y) - 0.5);
+    };
+    for (int k = -kMostShift; k <= kMostShift; ++k) {
+        const ToneCurve curve{found.curve.black + k / 255.0, found.curve.white + k / 255.0, 1.0};
+        if (off(curve) >= off(best)) continue;
+        const CombFit fit = comb.fit(curve);
+        if (fit.is_proof() && fit.score >= found.score - kAlike) best = curve;
+    }
+    return best;
+}
+
 }  // namespace
 
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background) {
@@ -179,7 +199,7 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (!is_one_curve || middle < 0.15 || middle > 0.85 || stored.extent().texels() < kLeastToneTexels)
         return std::nullopt;
     const ToneTexels texels = tone_texels(stored, background);
-    if (has_coarse_middle(texels)) return std::nullopt;
+    if (has_coarse_middle(texels, middle)) return std::nullopt;
     const double as_stored = least_error(texels);
     const std::vector<ToneCurve> usual = usual_tones(centre);
     const CodeComb comb(stored, background);
@@ -191,9 +211,14 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (as_stored < kLeastToneError && !in_codes.is_proof()) return sure_tone(comb, centre, texels, as_stored);
     const BestTone fits = best_of_forms(middle, true, texels);
     if (in_codes.is_proof()) {
-        ToneCandidate found{in_codes.curve};
-        if (agrees(found, texels, fits.best().error, as_stored) && shows(found.curve, found.form))
-            return ToneFit{found.curve, as_stored, found.error, as_stored, true};
+        ToneCandidate found{nearest_middle(in_codes, comb, centre)};
+        const bool is_shown = shows(found.curve, found.form) || in_codes.score >= kSureScore;
+        if (is_shown && agrees(found, texels, fits.best().error, as_stored)) {
+            // Codes show a contrast, and which brightness went with it only as far as that is a round number.
+            const bool is_cut = share_uncut(found.curve, texels, found.form) < kLeastUncut &&
+                                (roundness(found.curve) > 1 || off <= kFarOffMiddle);
+            return ToneFit{found.curve, as_stored, found.error, as_stored, true, is_cut};
+        }
     }
     if (const auto sure = sure_tone(comb, centre, texels, as_stored)) return sure;
     if (as_stored < kLeastToneError) return std::nullopt;
@@ -204,7 +229,8 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     }
     const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
     if (!shows(chosen.curve, chosen.form)) return std::nullopt;
-    return ToneFit{chosen.curve, as_stored, chosen.error, fits.other()};
+    const bool is_cut = share_uncut(chosen.curve, texels, chosen.form) < kLeastUncut;
+    return ToneFit{chosen.curve, as_stored, chosen.error, fits.other(), false, is_cut};
 }
 
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background) {
@@ -212,6 +238,7 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
     const ToneTexels texels = tone_texels(stored, background);
     const double as_stored = least_error(texels);
     std::vector<ToneCurve> usual = usual_tones(centre);
+    for (const ToneCurve& curve : even_contrasts()) usual.push_back(curve);
     std::erase_if(usual, [](const ToneCurve& curve) {
         return curve.gamma != 1.0 || std::abs(curve.black + curve.white - 1.0) > kMostUneven ||
                curve.white - curve.black > kMostSpan;

@@ -80,12 +80,13 @@ double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form)
     return static_cast<double>(uncut) / static_cast<double>(std::max<std::size_t>(1, texels.size()));
 }
 
-bool has_coarse_middle(const ToneTexels& texels) {
+bool has_coarse_middle(const ToneTexels& texels, double middle) {
     constexpr double kCoarse = 6.0 / 255.0;
     for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
         double below = 0.0, above = 1.0;
         for (const auto& texel : texels) {
-            (texel[c] < 0.5 ? below : above) = texel[c] < 0.5 ? std::max(below, texel[c]) : std::min(above, texel[c]);
+            const bool is_below = texel[c] < middle;
+            (is_below ? below : above) = is_below ? std::max(below, texel[c]) : std::min(above, texel[c]);
         }
         if (above - below >= kCoarse) return true;
     }

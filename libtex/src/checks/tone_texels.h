@@ -35,8 +35,8 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = Z
 // The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
 double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
 
-// Whether so few codes are used near the middle that the middle itself is known to six codes at best: a posterised map.
-bool has_coarse_middle(const ToneTexels& texels);
+// Whether so few codes are used near the middle of x and y that it is known to six codes at best: a posterised map.
+bool has_coarse_middle(const ToneTexels& texels, double middle);
 
 // The forms that may have been stored, the usual one first. No curve changes whether z grows where x and y say so.
 std::vector<ZForm> possible_forms(const ToneTexels& texels);

@@ -31,6 +31,7 @@ constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
 constexpr double kMostEmpty = 0.1;   // of the codes of x and y: a contrast that cuts z off everywhere leaves more
+constexpr double kLeastComb = 0.4;   // maps of few codes, whose histograms have gaps, too: at most 0.33
 constexpr double kUnsure = 0.9;      // a confidence
 constexpr float kVaries = 0.05f;     // of a stored channel: more than its rounding
 constexpr float kSteepRange = 0.4f;  // of x or y as stored: z would vary by 10 codes
@@ -53,6 +54,14 @@ void find_levels_of(const CheckContext& context, bool is_stretched, Finding& fin
                        (curve.gamma != 1.0 ? " if gamma " + decimal(curve.gamma, 2)
                                            : " if a contrast of " + decimal(1.0 / (curve.white - curve.black), 2)) +
                        " is taken back";
+}
+
+// Whether x and y went through some contrast, whatever its numbers.
+bool has_gaps_of_contrast(const CheckContext& context) {
+    const CodeComb comb(context.stored, context.background ? &*context.background : nullptr);
+    if (comb.share_empty() <= kMostEmpty) return false;
+    const CombFit fit = comb.best(even_contrasts());
+    return fit.score >= kLeastComb || fit.gaps > 0.0;
 }
 
 void check_lengths(const CheckContext& context, Findings& findings) {
@@ -157,10 +166,10 @@ void check_channels(const CheckContext& context, Findings& findings) {
         const float blue = counts.low[static_cast<std::size_t>(cz)];
         Finding& finding = findings.add("N209", "blue is " + decimal(static_cast<double>(blue), 3) + " everywhere");
         if (blue == 1.0f) find_levels_of(context, true, finding);  // which may have cut all of z off
-        const Background* const background = context.background ? &*context.background : nullptr;
-        if (blue == 1.0f && !finding.tone && CodeComb(stored, background).share_empty() > kMostEmpty) {
+        if (blue == 1.0f && !finding.tone && has_gaps_of_contrast(context)) {
             finding.confidence = kUnsure;
-            finding.message += ", and the histograms of x and y have gaps: a contrast may have cut z off";
+            finding.message += ", and the histograms of x and y have gaps, as after a contrast that cut z off";
+            finding.fix_harms = "z that is rebuilt from x and y of too great a contrast makes vectors worse";
         }
     }
     if (counts[Property::red_not_one].count > 0) {

@@ -46,6 +46,7 @@ constexpr RuleRepair kRepairs[] = {
     {"N210", choice, bake_heights},
     // Vectors.
     {"N315", likely, smooth_steps},
+    {"N305", likely, smooth_steps},
     {"N215", likely, fill_background},
     {"N207", likely, straighten},
     {"N205", likely, normalize},
@@ -181,8 +182,8 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             break;
         case rebuild_z:
             if (x == 2 || y == 2 || format_info(report.format).channels < 3) return {};
-            if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}, step};
-            if (finding.confidence < kSurely) step.certainty = likely;
+            // What a contrast cut off follows from x and y once these are shorter again, and not before.
+            if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}};
             break;
         case undo_tone:
             if (!finding.tone || z < 0) return {};

@@ -18,6 +18,7 @@
 #include "checks/centre.h"
 #include "checks/texel_counts.h"
 #include "checks/tone_texels.h"
+#include "repairs/smooth_heights.h"
 #include "repairs/smooth_steps.h"
 #include "rows/math.h"
 #include "rows/unpack_rows.h"
@@ -292,7 +293,7 @@ Result<void> bake_picture(const RepairOptions& options, const Texture& current, 
 
 }  // namespace
 
-Result<void> apply_step(const RepairStep& step, const RepairOptions& options, const Texture& current,
+Result<void> apply_step(const RepairStep& step, double figure, const RepairOptions& options, const Texture& current,
                         StoredLevels& levels, const Execution& execution) {
     const MipOptions& mip = options.mip;
     const auto row_change = [&](const RowChange& change) { return each_row(levels, execution, change); };
@@ -346,7 +347,10 @@ Result<void> apply_step(const RepairStep& step, const RepairOptions& options, co
             });
         }
         case RepairKind::smooth_steps:
-            if (auto done = smooth_base(levels, execution); !done) return done;
+            if (auto done = step.rule->id == "N305" ? smooth_heights(levels, figure, execution)
+                                                    : smooth_base(levels, execution);
+                !done)
+                return done;
             return levels.levels.size() > 1 ? build_levels(mip, false, levels, execution) : Result<void>();
         case RepairKind::bake_heights: return bake_picture(options, current, levels, execution);
         case RepairKind::change_sign:

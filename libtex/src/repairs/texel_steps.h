@@ -9,9 +9,10 @@
 
 namespace tex::inline v1 {
 
-// Applies a step to all levels. `current` is the texture as it stands, from which the background is found.
+// Applies a step to all levels. `figure` is that of its finding; `current` is the texture as it stands, from which the
+// background is found.
 // Errors: unsupported (the step does not suit this layout), out_of_memory, cancelled.
-[[nodiscard]] Result<void> apply_step(const RepairStep& step, const RepairOptions& options, const Texture& current,
-                                      StoredLevels& levels, const Execution& execution);
+[[nodiscard]] Result<void> apply_step(const RepairStep& step, double figure, const RepairOptions& options,
+                                      const Texture& current, StoredLevels& levels, const Execution& execution);
 
 }  // namespace tex::inline v1
