@@ -301,5 +301,15 @@ TEST(MigrationPage, EveryCommandOfOursRuns) {
         EXPECT_NE(text.find(program), std::string::npos) << program;
 }
 
+// Viewers of glTF read its UASTC, also as files of their own; not x and y alone.
+TEST_F(Engines, ViewersReadUastc) {
+    does("bake-normals rock.png -o u.ktx2 --for gltf-ktx2 --effort fast");
+    does("bake-normals rock.png -o x.ktx2 --format uastc-rrrg --mips all --effort fast");
+    for (const std::string engine : {"three", "babylon", "playcanvas", "cesium", "gltf-ktx2"}) {
+        EXPECT_EQ(shell(scratch_, "check-normals --for " + engine + " u.ktx2").code, 0) << engine;
+        EXPECT_EQ(shell(scratch_, "check-normals --for " + engine + " x.ktx2").code, 1) << engine;
+    }
+}
+
 }  // namespace
 }  // namespace tex::cli
