@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// models_valid.mjs FILES.json: errors that Khronos' validator finds in an output and not in its original; see models.sh.
+// models_valid.mjs FILES.json: errors and warnings that Khronos' validator finds in an output and not in its original;
+// see models.sh.
 import {readFileSync} from "fs";
 import {createRequire} from "module";
 import {dirname, join} from "path";

@@ -51,6 +51,7 @@ const Case kCases[] = {
     {"Hidden", "bake-normals", {"a.png", "-o", "out.png", "--occlusion-out", "ao.exr", "--horizon-out", "hor.png"}, ""},
     {"OtherReader", "bake-normals", {"a.tif", "-o", "out.dds"}, "a.tif", true},
     {"Model", "pack-normals", {"a.gltf", "-o", "out.gltf", "--y", "down"}, "a.gltf"},
+    {"OneFile", "pack-normals", {"a.gltf", "-o", "out.glb", "--y", "down"}, "a.gltf"},
     {"Tangents", "convert-normals", {"a.gltf", "-o", "out.gltf", "--tangents", "mikktspace"}, "a.gltf"},
     {"Lod",
      "transfer-normals",
