@@ -238,8 +238,7 @@ private:
         }
         auto report = check(file_, state.texture, checks_, execution_);
         if (!report) return report.error();
-        if (!is_gone(*report, step, figure) || contradicts(step, *report))
-            return std::optional<State>();
+        if (!is_gone(*report, step, figure) || contradicts(step, *report)) return std::optional<State>();
         const auto degrees = mean_change(current(), state.texture, execution_);
         if (!degrees) return degrees.error();
         step.degrees = *degrees;

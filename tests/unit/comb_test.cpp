@@ -111,11 +111,11 @@ TEST(Repair, TakesAStretchBackThatCutZOffOnlyIfAsked) {
         EXPECT_LT(angle(*done.texture, plain), 0.05 * angle(damaged, plain)) << plan_of(done);
     }
     // Both ends alike leave the middle where it is. Rebuilding z from x and y that are too long makes them worse.
-    const Texture damaged = stretched(85.3, 169.7);
+    const Texture damaged = stretched(40.3, 214.7);
     EXPECT_TRUE(repaired(damaged).steps.empty()) << plan_of(repaired(damaged));
     const Repaired done = repaired(damaged, likely);
     ASSERT_TRUE(done.texture);
-    EXPECT_LT(angle(*done.texture, plain), 0.05 * angle(damaged, plain)) << plan_of(done);
+    EXPECT_LT(angle(*done.texture, plain), 0.3) << plan_of(done);
 }
 
 // Every code as often as any other: nothing of a curve is left, least of all that of sRGB.

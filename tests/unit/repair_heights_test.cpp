@@ -20,7 +20,8 @@ constexpr double kBumpiness = 24.0;
 
 double hills(int i, int j) {
     const double turn = 2.0 * 3.14159265358979 / kSide, x = turn * i, y = turn * j;
-    return 0.5 + 0.2 * std::sin(2 * x + y) + 0.14 * std::sin(3 * x - 4 * y + 1.0) + 0.1 * std::sin(5 * x + 2.0) * std::cos(4 * y);
+    return 0.5 + 0.2 * std::sin(2 * x + y) + 0.14 * std::sin(3 * x - 4 * y + 1.0) +
+           0.1 * std::sin(5 * x + 2.0) * std::cos(4 * y);
 }
 
 // Central differences in double, stored with 8 bits. `values`: how many the heights have, 0 for all.

@@ -180,8 +180,8 @@ struct Repaired {
 //     invert             c' = 1 - c, or -c if values are signed
 //     stretch_z          c' = (c + 1) / 2
 //     turn_left          (x, y)' = (-y, x), with y up; turn_right is its inverse
-//     smooth_steps       the field of least bending within half a step of the values, as deband() finds it, of x and of
-//                        y; z as x and y imply it, within half a step, too; smaller levels are built again
+//     smooth_steps       the field of least bending within half a step, as deband() finds it, of x and of y, and z that
+//                        they imply; for N305, of the heights behind the slopes; smaller levels are built again
 //
 // Precondition (asserted): the texture has at least one level, each with level_bytes() bytes.
 // Errors: bad_option (see validate()), out_of_memory, cancelled.

@@ -126,8 +126,7 @@ void CodeComb::collect_values(const Stored& stored, const Background* background
         int used = 0;
         for (int j = 0; j < stored.extent().height; ++j) {
             for (int i = 0; i < stored.extent().width; ++i) {
-                if ((background != nullptr && background->holds(i, j)) ||
-                    (alpha != nullptr && alpha->at(i, j) < 1.0f))
+                if ((background != nullptr && background->holds(i, j)) || (alpha != nullptr && alpha->at(i, j) < 1.0f))
                     continue;
                 const float code = kTop * plane.at(i, j);
                 if (!(code >= 0.0f && code <= kTop)) return values_.clear();

@@ -210,8 +210,10 @@ constexpr Rule kTextureRules[] = {
     {"N305", "banding", damage, warning, true, "The slopes lie on a lattice.",
      "The map was baked from heights of few values, 8 bits say: slopes take few values too, which shows as terraces in "
      "reflections. Bake from 16 bits, or smooth the steps of the heights.",
-     "Bake it again from heights of 16 bits or floats, or with --deband on. Without the heights, repair-normals --likely "
-     "finds them where the slopes are central differences.", ""},
+     "Bake it again from heights of 16 bits or floats, or with --deband on. Without the heights, repair-normals "
+     "--likely "
+     "finds them where the slopes are central differences.",
+     ""},
     {"N306", "bc-blocks", damage, warning, true, "The map shows the 4x4 blocks of texture compression.",
      "Either an uncompressed file holds texels that were BC-compressed before, or the steps between the blocks of a "
      "compressed one are twice those inside. DXT1 and DXT5 with normals in R, G and B do this.",

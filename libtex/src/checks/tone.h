@@ -20,7 +20,7 @@ struct ToneFit {
     double as_stored = 0.0, error = 0.0;  // without the curve, and with it
     double other = 0.0;                   // with the best curve of the other family: levels, or gamma
     bool is_in_codes = false;             // the histogram of 8 bits shows this curve and no other
-    bool is_cut = false;                  // z is cut off nearly everywhere: the middle alone shows that there was a curve
+    bool is_cut = false;  // z is cut off nearly everywhere: the middle alone shows that there was a curve
 };
 
 // The change of levels of all channels that moved x and y off the middle. Nothing if they are there, or if the lengths

@@ -138,8 +138,8 @@ Result<Surface> smooth_surface(const WholeSlopes& slopes, const Execution& execu
         for (int i = 0; i < slopes.extent.width; ++i) {
             const auto& height = heights[slopes.at(i, j)];
             // One more, because heights of 0 stay at or above it.
-            surface.field.height.at(i, j) = height ? kUnit * static_cast<float>(*height - least + 1)
-                                                   : std::numeric_limits<float>::quiet_NaN();
+            surface.field.height.at(i, j) =
+                height ? kUnit * static_cast<float>(*height - least + 1) : std::numeric_limits<float>::quiet_NaN();
         }
     }
     auto smooth = deband(std::move(surface.field), Deband::on, execution);

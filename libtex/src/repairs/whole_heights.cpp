@@ -153,7 +153,8 @@ double WholeSlopes::closing_share() const {
     double all = 0.0, closed = 0.0;
     for (int j = 1; j + 1 < extent.height; ++j) {
         for (int i = 1; i + 1 < extent.width; ++i) {
-            const bool is_level = across[at(i, j - 1)] == across[at(i, j + 1)] && down[at(i - 1, j)] == down[at(i + 1, j)];
+            const bool is_level =
+                across[at(i, j - 1)] == across[at(i, j + 1)] && down[at(i - 1, j)] == down[at(i + 1, j)];
             if (is_level) continue;
             all += 1.0;
             closed += closes(i, j) ? 1.0 : 0.0;
