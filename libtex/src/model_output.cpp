@@ -93,6 +93,7 @@ Result<Prepared> prepare(const std::string& input, const std::string& output, co
     place.is_same_folder = fs::equivalent(folder_of(input), folder_of(output), error);
     place.name = output.substr(name_begin(output));
     place.is_binary = *is_binary;
+    place.is_missing = [&](const std::string& name) { return !FileStatus::of(beside(input, name)); };
     auto made = write_gltf(*bytes, load, place, changes);
     if (!made) return made.error().of(input);
     Prepared prepared{std::move(*made), {}};

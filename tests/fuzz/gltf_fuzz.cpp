@@ -68,7 +68,7 @@ void put_pictures(std::span<const std::byte> bytes, const tex::LoadBeside& load)
     const auto maps = maps_in(bytes, nullptr);
     // Both forms, and back: the maps stay.
     for (const bool is_binary : {true, false}) {
-        const auto other = tex::write_gltf(bytes, load, {true, is_binary ? "out.glb" : "out.gltf", is_binary}, {});
+        const auto other = tex::write_gltf(bytes, load, {true, is_binary ? "out.glb" : "out.gltf", is_binary, {}}, {});
         if (!other) continue;
         expect(maps_in(other->bytes, nullptr).size() == maps.size());
     }

@@ -39,7 +39,8 @@ std::string_view media_type_in(std::string_view data_uri) {
 
 class GltfJoiner {
 public:
-    GltfJoiner(JsonValue root, JsonNode& text, const LoadBeside& load) : root_(root), text_(text), load_(load) {}
+    GltfJoiner(JsonValue root, JsonNode& text, const LoadBeside& load, const ModelPlace& place)
+        : root_(root), text_(text), load_(load), place_(place) {}
 
     Result<void> join();
     [[nodiscard]] const std::vector<std::byte>& binary() const { return binary_; }
@@ -62,6 +63,7 @@ private:
     JsonValue root_;
     JsonNode& text_;
     const LoadBeside& load_;
+    const ModelPlace& place_;
     std::vector<std::byte> binary_;
     std::vector<Place> places_;
     std::vector<std::string> others_;             // buffers without bytes, which meshoptimizer fills
@@ -149,7 +151,7 @@ void GltfJoiner::move_views() {
     }
 }
 
-// What cannot be loaded stays named.
+// What is not there stays named.
 Result<void> GltfJoiner::join_image(std::size_t index) {
     const JsonValue image = root_["images"][index];
     const auto uri = image["uri"].text();
@@ -161,6 +163,8 @@ Result<void> GltfJoiner::join_image(std::size_t index) {
     auto known = images_.find(*path);
     if (known == images_.end()) {
         const auto bytes = is_data ? decode_data_uri(*uri) : load_(*path);
+        const bool is_missing = !is_data && (!place_.is_missing || place_.is_missing(*path));
+        if (!bytes && !is_data && !is_missing) return bytes.error();
         if (!bytes || bytes->empty()) return {};
         const auto begin = add(*bytes);
         if (!begin) return begin.error();
@@ -220,13 +224,13 @@ Result<void> GltfJoiner::join() {
 
 }  // namespace
 
-Result<JoinedGltf> joined_gltf(std::span<const std::byte> text, const LoadBeside& load) {
+Result<JoinedGltf> joined_gltf(std::span<const std::byte> text, const LoadBeside& load, const ModelPlace& place) {
     const auto chunks = gltf_chunks(text);
     if (!chunks) return chunks.error();
     const auto document = JsonDocument::parse(chunks->json);
     if (!document) return document.error();
     JsonText json(chunks->json);
-    GltfJoiner joiner(document->root(), json.root(), load);
+    GltfJoiner joiner(document->root(), json.root(), load, place);
     if (auto joined = joiner.join(); !joined) return joined.error();
     std::string made = json.text();
     made.erase(0, made.find('{'));  // a byte order mark

@@ -11,6 +11,7 @@
 #include <tex/types.h>
 
 #include "mesh/gltf_buffers.h"
+#include "mesh/gltf_names.h"
 
 namespace tex::inline v1 {
 
@@ -19,9 +20,9 @@ struct JoinedGltf {
     std::vector<std::string> files;  // relative paths of what was beside the text and is in it now
 };
 
-// Text as GLB: buffers become one, and images parts of it. Images that cannot be loaded, and what else the text names,
-// stay where they are. Errors: bad_data, unsupported (4 GiB or more), those of `load` for buffers.
-Result<JoinedGltf> joined_gltf(std::span<const std::byte> text, const LoadBeside& load);
+// Text as GLB: buffers become one, and images parts of it. Images that are not there, and what else the text names,
+// stay where they are. Errors: bad_data, unsupported (4 GiB or more), those of `load`.
+Result<JoinedGltf> joined_gltf(std::span<const std::byte> text, const LoadBeside& load, const ModelPlace& place);
 
 struct DividedGltf {
     std::vector<std::byte> text;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -20,6 +21,8 @@ struct ModelPlace {
     bool is_same_folder = false;
     std::string name;        // of the output, without its folder
     bool is_binary = false;  // the output is GLB
+    // Whether there is no file at a relative path from the input. Empty: what cannot be loaded is not there.
+    std::function<bool(const std::string& path)> is_missing = {};
 };
 
 // The URI of a relative path.

@@ -70,7 +70,7 @@ Result<WrittenGltf> write_gltf(std::span<const std::byte> file, const LoadBeside
     const bool is_binary = !file.empty() && file[0] == std::byte{'g'};
     if (is_binary == place.is_binary) return write_same_form(file, load, place, changes);
     if (!is_binary) {
-        auto joined = joined_gltf(file, load);
+        auto joined = joined_gltf(file, load, place);
         if (!joined) return joined.error();
         auto written = write_same_form(joined->bytes, load, place, changes);
         if (written) written->joined = std::move(joined->files);
