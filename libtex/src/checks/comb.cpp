@@ -137,7 +137,7 @@ void CodeComb::collect_values(const Stored& stored, const Background* background
                 if (++used > kCodes) return values_.clear();
             }
         }
-        // Those at the ends may have been cut off.
+        // Values at the ends may have been cut off.
         for (std::size_t k = 1; k + 1 < is_used.size(); ++k) {
             if (is_used[k]) values_.push_back(static_cast<double>(k) / static_cast<double>(kTop));
         }
@@ -257,14 +257,6 @@ std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {
     for (int k = 1; k <= 76; ++k) {
         add({-k / 255.0, 1.0 - k / 255.0, 1.0});
         add({k / 255.0, 1.0 + k / 255.0, 1.0});
-    }
-    // The contrast of GIMP and ImageMagick: the tangent of an angle, in shares of 127 and of 100.
-    for (const int top : {100, 127}) {
-        for (int k = 1; 2 * k <= top; ++k) {
-            const double angle = 0.25 * math::kPi * (1.0 + static_cast<double>(k) / top);
-            const double span = math::cos(angle) / math::sin(angle);
-            add({0.5 - 0.5 * span, 0.5 + 0.5 * span, 1.0});
-        }
     }
     // People set levels in percent or codes, and cut little off. Programs that stretch a picture to its own darkest and
     // lightest codes make any contrast of maps that are nearly flat.

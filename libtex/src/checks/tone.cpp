@@ -238,7 +238,11 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
     const ToneTexels texels = tone_texels(stored, background);
     const double as_stored = least_error(texels);
     std::vector<ToneCurve> usual = usual_tones(centre);
-    for (const ToneCurve& curve : even_contrasts()) usual.push_back(curve);
+    // Where z is left, it decides among the usual ones.
+    const auto is_one = [](const std::array<double, 3>& texel) { return texel[2] == 1.0; };
+    if (std::all_of(texels.begin(), texels.end(), is_one)) {
+        for (const ToneCurve& curve : even_contrasts()) usual.push_back(curve);
+    }
     std::erase_if(usual, [](const ToneCurve& curve) {
         return curve.gamma != 1.0 || std::abs(curve.black + curve.white - 1.0) > kMostUneven ||
                curve.white - curve.black > kMostSpan;
