@@ -233,7 +233,8 @@ TEST_F(PackStream, ReadsOnceMoreWhereTheTexelsSayOtherwise) {
         draw_options(random, 1);
         options_.source.unpack.range = ValueRange::automatic;
         const std::string input = write(texture, floats ? Container::exr : Container::png);
-        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height);
+        SCOPED_TRACE(testing::Message() << "round " << round << ", " << extent.width << "x" << extent.height << ", "
+                                        << name_of(kEncodingNames, pack_.encoding));
         const Result<Bytes> expected = by_verbs(input, Container::ktx2);
         ASSERT_TRUE(expected) << expected.error().message();
         double last = 0.0;

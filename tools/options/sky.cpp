@@ -38,7 +38,9 @@ Result<Texture> copy_with(const ChannelFile& file, const Plane<float>& values, c
         return refused(fmt::format("is {}x{} texels, and the occlusion is {}x{}", extent.width, extent.height,
                                    values.extent().width, values.extent().height));
     }
-    Texture copy{whole->format, {whole->levels.front()}};
+    Texture copy;
+    copy.format = whole->format;
+    copy.levels = {whole->levels.front()};
     std::byte* code = copy.levels.front().bytes.data();
     const std::size_t size = format.bits == 8 ? 1 : 2;
     for (int j = 0; j < extent.height; ++j) {

@@ -22,9 +22,11 @@ struct Bc7Source {
         return texels + 4 * (static_cast<std::ptrdiff_t>(j) * extent.width + i);
     }
 
+    // Filters of ones leave values that are less by a rounding error.
     bool has_alpha(int left, int top) const {
+        constexpr float kOne = 254.5f / 255.0f;
         for (int k = 0; k < kEdge * kEdge; ++k) {
-            if (!(texel(left, top, k)[3] >= 1.0f)) return true;
+            if (!(texel(left, top, k)[3] >= kOne)) return true;
         }
         return false;
     }
