@@ -217,8 +217,9 @@ void BakeNormals::note_strength(cli::Job& job, const Report& done) const {
 template <class Report>
 void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
     constexpr double kDegrees = 57.295779513082320877;  // of a radian
-    // Whoever gave no strength cannot have meant faint bumps.
-    const double faint = reader_.strength.is_given || done.on_ground ? 5.0 : 12.0;
+    // Whoever tries one map without a strength cannot have meant faint bumps.
+    const bool is_trial = !reader_.strength.is_given && !done.on_ground && command.inputs().size() == 1;
+    const double faint = is_trial ? 12.0 : 5.0;
     const double degrees = kDegrees * std::atan(static_cast<double>(done.usual_slope));
     const bool is_asked_for = done.strength.x == 0.0f && done.strength.y == 0.0f;
     if (degrees >= faint || done.auto_strength == 0.0f || is_asked_for) return;  // 0: a placeholder

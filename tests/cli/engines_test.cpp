@@ -95,23 +95,23 @@ TEST_F(Engines, EachGetsItsFileTypeFormatLevelsAndDirection) {
 }
 
 TEST_F(Engines, OneEngineWritesTheBytesOfItsOptions) {
-    does("bake-normals rock.png -o a.png --for unreal");
-    does("bake-normals rock.png -o b.png --format rgb8 --y down");
+    does("bake-normals rock.png --bumpiness 1 -o a.png --for unreal");
+    does("bake-normals rock.png --bumpiness 1 -o b.png --format rgb8 --y down");
     EXPECT_TRUE(scratch_.read("a.png") == scratch_.read("b.png"));
-    does("bake-normals rock.png -o - --for ios | cat > a.ktx2; true");
-    does("bake-normals rock.png -o b.ktx2 --format eac-rg11 --mips all");
+    does("bake-normals rock.png --bumpiness 1 -o - --for ios | cat > a.ktx2; true");
+    does("bake-normals rock.png --bumpiness 1 -o b.ktx2 --format eac-rg11 --mips all");
     EXPECT_TRUE(scratch_.read("a.ktx2") == scratch_.read("b.ktx2"));
 }
 
 TEST_F(Engines, OptionsOverrideThePresetInAnyOrder) {
     for (const std::string order : {"--for bevy --y down --mips 2", "--mips 2 --y down --for bevy"}) {
-        does("bake-normals rock.png -o x.ktx2 " + order);
+        does("bake-normals rock.png --bumpiness 1 -o x.ktx2 " + order);
         const WantedFile wanted{"bevy", "x.ktx2", "bc5", "down", 2};
         expect_fits(wanted, "x.ktx2");
     }
-    does("bake-normals rock.png -o x.dds --for unity --format dxt5nm --mips all");
+    does("bake-normals rock.png --bumpiness 1 -o x.dds --for unity --format dxt5nm --mips all");
     EXPECT_EQ(shell(scratch_, "check-normals x.dds --require format=dxt5nm --require mips=full").code, 0);
-    does("bake-normals rock.png --out-dir out --container ktx2 --for unity --quiet");
+    does("bake-normals rock.png --bumpiness 1 --out-dir out --container ktx2 --for unity --quiet");
     EXPECT_TRUE(scratch_.has("out/rock.ktx2"));
     fails("bake-normals rock.png -o x.png --for bevy", "png files cannot hold bc5");
 }
@@ -132,17 +132,17 @@ TEST_F(Engines, NormalMapsGetTheDirectionAndTheLevelsOfTheEngine) {
 }
 
 TEST_F(Engines, NamesSeparateTheFilesOfSeveralEngines) {
-    does("bake-normals rock.png --name '{stem}_{engine}_{format}.{type}' --for unity,bevy");
+    does("bake-normals rock.png --bumpiness 1 --name '{stem}_{engine}_{format}.{type}' --for unity,bevy");
     EXPECT_TRUE(scratch_.has("rock_unity_rgb8.png"));
     EXPECT_TRUE(scratch_.has("rock_bevy_bc5.ktx2"));
-    does("bake-normals rock.png --name '{engine}/{stem}_n.{type}' --for unity,bevy");
+    does("bake-normals rock.png --bumpiness 1 --name '{engine}/{stem}_n.{type}' --for unity,bevy");
     EXPECT_TRUE(scratch_.has("bevy/rock_n.ktx2"));
-    does("bake-normals rock.png --root . --out-dir rooted --for unity,o3de");
+    does("bake-normals rock.png --bumpiness 1 --root . --out-dir rooted --for unity,o3de");
     EXPECT_TRUE(scratch_.has("rooted/o3de/rock_normal.png"));
-    does("bake-normals rock.png --name x_normal.png");
+    does("bake-normals rock.png --bumpiness 1 --name x_normal.png");
     does("pack-normals x_normal.png --out-dir once --for o3de");
     EXPECT_TRUE(scratch_.has("once/x_normal.png"));
-    does("bake-normals rock.png --name '{stem}.{type}' --container dds");
+    does("bake-normals rock.png --bumpiness 1 --name '{stem}.{type}' --container dds");
     EXPECT_TRUE(scratch_.has("rock.dds"));
 }
 
@@ -153,11 +153,11 @@ TEST_F(Engines, MistakesSayWhatIsWrong) {
     fails("bake-normals rock.png -o x.png --for unity,unity", "unity is named twice");
     fails("bake-normals rock.png -o x.png --for unity,list", "not 'list'");
     fails("bake-normals rock.png -o x.png --for unity,unreal", "-o takes one engine of --for, 2 are given");
-    fails("bake-normals rock.png --name 'n.png' --for unity,unreal",
+    fails("bake-normals rock.png --bumpiness 1 --name 'n.png' --for unity,unreal",
           "rock.png for unity and for unreal have the same output n.png; {engine} in --name separates them");
     fails("bake-normals - --out-dir out --for unity,unreal < rock.png", "standard input can only be read once");
-    fails("bake-normals rock.png --name '{engine}.png'", "{engine} needs --for");
-    fails("bake-normals rock.png --name '{stem}.{type}'", "{type} needs --for or --container");
+    fails("bake-normals rock.png --bumpiness 1 --name '{engine}.png'", "{engine} needs --for");
+    fails("bake-normals rock.png --bumpiness 1 --name '{stem}.{type}'", "{type} needs --for or --container");
     EXPECT_EQ(scratch_.list(), std::vector<std::string>{"rock.png"});
 }
 
@@ -222,7 +222,7 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     };
     says("gltf", "out/bevy/rock.ktx2", "gltf does not read ktx2 but png, jpeg");
     says("gltf", "out/bevy/rock.ktx2", "it does not read normals from bc5-unorm, rg but from rgb8, rgba8, rgb16");
-    does("bake-normals rock.png -o astc.ktx2 --for ios --format astc-8x6 --effort fast");
+    does("bake-normals rock.png --bumpiness 1 -o astc.ktx2 --for ios --format astc-8x6 --effort fast");
     EXPECT_EQ(shell(scratch_, "check-normals --for ios astc.ktx2").code, 0);
     EXPECT_EQ(shell(scratch_, "check-normals --for android astc.ktx2").code, 0);
     says("bevy", "astc.ktx2", "does not read normals from astc-8x6-unorm, ra");
@@ -230,7 +230,9 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
          "does not read normals from astc-8x6-unorm, ra but from bc5, eac-rg11, rg8, rgba8");
     says("three-packed", "out/three/rock.png", "three-packed does not read png but ktx2");
     says("three", "out/three-packed/rock.ktx2", "three does not read normals from bc5-unorm, rg");
-    does("bake-normals rock.png -o rgb.ktx2 --format rgb8; bake-normals rock.png -o rgba.ktx2 --format rgba8");
+    does(
+        "bake-normals rock.png --bumpiness 1 -o rgb.ktx2 --format rgb8; bake-normals rock.png --bumpiness 1 -o "
+        "rgba.ktx2 --format rgba8");
     says("three", "rgb.ktx2",
          "three does not read normals from rgb8-unorm, rgb but from rgba8, rgba16f, rgba32f, bc7, uastc");
     EXPECT_EQ(shell(scratch_, "check-normals --for three rgba.ktx2").code, 0);
@@ -238,7 +240,7 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     EXPECT_EQ(scratch_.read("out/three-packed/rock.ktx2"), scratch_.read("out/bevy/rock.ktx2"));
     // Engines treat floats as other pictures (three.js 0.187 draws an EXR file of vectors flat and black).
     does(
-        "bake-normals rock.png -o vectors.exr; convert out/unity/rock.png -strip codes.png; "
+        "bake-normals rock.png --bumpiness 1 -o vectors.exr; convert out/unity/rock.png -strip codes.png; "
         "oiiotool codes.png --colorconvert linear linear -d float -o codes.exr 2>/dev/null || "
         "convert codes.png -set colorspace RGB -define quantum:format=floating-point codes.exr");
     says("blender", "vectors.exr", "blender decodes 2c - 1, and the file holds x, y and z themselves");
@@ -246,9 +248,9 @@ TEST_F(Engines, CheckNormalsAcceptsWhatForMakesAndNamesWhatDoesNotFit) {
     fails("bake-normals rock.png -o vectors.exr --for three --format half", "and three decodes 2c - 1");
     fails("pack-normals out/unity/rock.png -o a.ktx2 --for bevy --format rgba16f", "and bevy decodes 2c - 1");
     says("bevy", "out/godot/rock.png", "bevy needs all 10 levels, and the file has 1");
-    does("bake-normals rock.png -o one.dds --mips none");
+    does("bake-normals rock.png --bumpiness 1 -o one.dds --mips none");
     says("unity", "one.dds", "unity needs all 10 levels, and the file has 1");
-    does("bake-normals rock.png -o unity.dds");
+    does("bake-normals rock.png --bumpiness 1 -o unity.dds");
     EXPECT_EQ(shell(scratch_, "check-normals --for unity unity.dds").code, 0);
     EXPECT_EQ(shell(scratch_, "check-normals --for gltf unity.dds --disable N113").code, 0);
     fails("check-normals rock.png --for unity,unreal #", "unity and unreal read green the other way round");
@@ -303,8 +305,8 @@ TEST(MigrationPage, EveryCommandOfOursRuns) {
 
 // Viewers of glTF read its UASTC, also as files of their own; not x and y alone.
 TEST_F(Engines, ViewersReadUastc) {
-    does("bake-normals rock.png -o u.ktx2 --for gltf-ktx2 --effort fast");
-    does("bake-normals rock.png -o x.ktx2 --format uastc-rrrg --mips all --effort fast");
+    does("bake-normals rock.png --bumpiness 1 -o u.ktx2 --for gltf-ktx2 --effort fast");
+    does("bake-normals rock.png --bumpiness 1 -o x.ktx2 --format uastc-rrrg --mips all --effort fast");
     for (const std::string engine : {"three", "babylon", "playcanvas", "cesium", "gltf-ktx2"}) {
         EXPECT_EQ(shell(scratch_, "check-normals --for " + engine + " u.ktx2").code, 0) << engine;
         EXPECT_EQ(shell(scratch_, "check-normals --for " + engine + " x.ktx2").code, 1) << engine;

@@ -71,7 +71,7 @@ TEST_F(Streams, AFifoThatWaitsForItsReaderIsInterruptedInOneLine) {
 }
 
 TEST_F(Streams, NothingIsSaidWhereNothingIsAsked) {
-    const Ran ran = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds"});
+    const Ran ran = run(scratch_, "bake-normals", {"a.png", "--bumpiness", "1", "-o", "a.dds"});
     EXPECT_EQ(ran.out, "");
     EXPECT_EQ(ran.err, "");
 }
@@ -85,15 +85,15 @@ TEST_F(Streams, ProgressIsForTerminalsUnlessAskedFor) {
 TEST_F(Streams, AFullDiskLeavesTheOldFile) {
     Setting full;
     full.stdout_path = "/dev/full";
-    const Ran json = run(scratch_, "bake-normals", {"a.png", "-o", "a.dds", "--json"}, full);
+    const Ran json = run(scratch_, "bake-normals", {"a.png", "--bumpiness", "1", "-o", "a.dds", "--json"}, full);
     EXPECT_EQ(json.code, 3);
     EXPECT_EQ(json.err, "bake-normals: error: standard output: no space left on the disk\n");
-    const Ran data = run(scratch_, "bake-normals", {"a.png", "-o", "-"}, full);
+    const Ran data = run(scratch_, "bake-normals", {"a.png", "--bumpiness", "1", "-o", "-"}, full);
     EXPECT_EQ(data.code, 3);
     EXPECT_EQ(lines_of(data.err).size(), 1u) << data.err;
     // A limit on the size of files is the closest to a full disk that is possible without a mount.
     scratch_.write("a.dds", "old");
-    const Ran limited = shell(scratch_, "ulimit -f 1; bake-normals a.png -o a.dds --format float");
+    const Ran limited = shell(scratch_, "ulimit -f 1; bake-normals a.png --bumpiness 1 -o a.dds --format float");
     EXPECT_EQ(limited.code, 3);
     EXPECT_EQ(lines_of(limited.err).size(), 1u) << limited.err;
     EXPECT_EQ(scratch_.read("a.dds"), "old");
@@ -101,10 +101,10 @@ TEST_F(Streams, AFullDiskLeavesTheOldFile) {
 }
 
 TEST_F(Streams, AReaderThatWentAwayEndsTheRunQuietly) {
-    const Ran json = shell(scratch_, "bake-normals a.png -o a.dds --json | true; exit ${PIPESTATUS[0]}");
+    const Ran json = shell(scratch_, "bake-normals a.png --bumpiness 1 -o a.dds --json | true; exit ${PIPESTATUS[0]}");
     EXPECT_TRUE(json.code == 3 || json.code == 0) << json.code;  // `true` may end after the line was written
     EXPECT_EQ(json.err, "");
-    const Ran data = shell(scratch_, "{ sleep 0.2; bake-normals a.png -o -; echo $? >&2; } | true");
+    const Ran data = shell(scratch_, "{ sleep 0.2; bake-normals a.png --bumpiness 1 -o -; echo $? >&2; } | true");
     EXPECT_EQ(data.err, "3\n");
 }
 

@@ -255,6 +255,10 @@ protected:
         for (std::size_t k = 0; k < after.size(); ++k) {
             std::vector<std::string> more;
             std::set_difference(is[k].begin(), is[k].end(), was[k].begin(), was[k].end(), std::back_inserter(more));
+            // Images that are not there stay named, also in GLB.
+            std::erase_if(more, [&](const std::string& word) {
+                return word == "URI_GLB" && std::count(was[k].begin(), was[k].end(), "IO_ERROR") > 0;
+            });
             EXPECT_TRUE(more.empty()) << more.front() << " in " << after[k] << ", made of " << before[k];
         }
         std::printf("%zu models were written\n", after.size());

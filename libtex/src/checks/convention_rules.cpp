@@ -62,7 +62,8 @@ std::string contradiction(const CheckContext& context, YAxis wanted, const std::
 void check_convention_rules(const CheckContext& context, Findings& findings) {
     const auto& require = context.options.require;
     if (!context.sampled_ok) {
-        if (require.y && context.has_vectors) findings.add("N403", "the picture is too small or too flat to show it");
+        if (require.y && context.has_vectors && !context.texture.y_known)
+            findings.add("N403", "the picture is too small or too flat to show it");
         return;
     }
     check_mixed(context, findings);
