@@ -105,6 +105,12 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     if (!fit) return;
     const ToneCurve& curve = fit->curve;
     const bool is_gamma = curve.gamma != 1.0;
+    // Nor may it bring them off the middle, apart from what its contrast makes of their distance: a change of x and y
+    // alone fits some shift of all three.
+    constexpr double kAway = 2.5 / 255.0;
+    const Centre without{undone(curve, centre.x), undone(curve, centre.y)};
+    const double contrast = is_gamma ? 1.0 : 1.0 / (curve.white - curve.black);
+    if (!fit->is_in_codes && without.distance(0.5) > contrast * centre.distance(0.5) + kAway) return;
     const std::string what = is_gamma ? "gamma " + decimal(curve.gamma, 2)
                                       : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
                                             decimal(100.0 * curve.white, 0) + " %";
@@ -116,8 +122,9 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     finding.figure = is_gamma ? curve.gamma : 1.0 / (curve.white - curve.black);
     finding.unit = is_gamma ? "gamma" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
-    constexpr double kClearlyBetter = 0.7, kClear = 0.99, kUnclear = 0.9;
-    const bool is_clear = fit->is_in_codes || fit->error < kClearlyBetter * fit->other;
+    // A change of x and y alone fits no curve of all three by more than some codes.
+    constexpr double kClearlyBetter = 0.7, kMostError = 2.0, kClear = 0.99, kUnclear = 0.9;
+    const bool is_clear = fit->is_in_codes || (fit->error < kMostError && fit->error < kClearlyBetter * fit->other);
     finding.confidence = is_clear && !fit->is_cut ? kClear : kUnclear;
     if (fit->is_cut) finding.message += "; z was cut off nearly everywhere, and does not confirm these numbers";
     finding.tone = curve;
