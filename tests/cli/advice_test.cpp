@@ -339,6 +339,16 @@ TEST_F(Advice, FixesOfTurnedAndStretchedPicturesAreThoseThatHelp) {
     EXPECT_NE(turned.find("fix: repair-normals t.png --turned left -o FIXED.png"), std::string::npos) << turned;
     EXPECT_NE(turned.find("--turned right"), std::string::npos) << turned;
     EXPECT_EQ(says("repair-normals t.png --turned left -o FIXED.png --no-sync").code, 0);
+    // ImageMagick exchanges the channels of a file without a statement.
+    ASSERT_EQ(
+        says("convert n.png -strip -separate -swap 0,1 -combine -colorspace sRGB -define png:color-type=2 e.png").code,
+        0);
+    EXPECT_NE(says("check-normals e.png").out.find("in it, x and y were exchanged: --likely --y up instead"),
+              std::string::npos)
+        << says("check-normals e.png").out;
+    EXPECT_EQ(
+        says("repair-normals e.png --likely --y up -o E.png --no-sync && compare-normals n.png E.png --max 0.01").code,
+        0);
     EXPECT_NE(says("check-normals g.png").out.find("gamma 2.2 fits better than the curve of sRGB"), std::string::npos);
 }
 

@@ -78,8 +78,15 @@ std::optional<Fix> repair_fix(const Finding& finding, const CheckReport& report,
                                                       : std::nullopt;
     }
     Fix fix{std::move(command), true};
-    if (fix.text.find("--turned left") != std::string::npos)
+    if (fix.text.find("--turned left") != std::string::npos) {
         fix.advice = "If bumps look like dents after that, it was turned to the right: --turned right";
+        // The two look the same, and what was exchanged stays wrong when it is turned.
+        if (finding.message.find("if green points") != std::string::npos) {
+            const bool is_up = finding.message.find("are exchanged, if green points up") != std::string::npos;
+            fix.advice += fmt::format("; if green points {0} in it, x and y were exchanged: --likely --y {0} instead",
+                                      is_up ? "up" : "down");
+        }
+    }
     if (fix.text.find("--mirrored green") != std::string::npos) {
         fix.advice =
             "Green points down in it, which glTF does not allow, and is turned over, too; if bumps look like dents "

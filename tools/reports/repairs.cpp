@@ -93,12 +93,13 @@ Json repairs_json(const Repaired& repaired) {
 
 void RepairTotals::add(const Repaired& of) {
     ++maps;
-    ++(of.has_errors() ? refused : of.steps.empty() ? whole : repaired);
+    ++(of.has_errors() ? refused : !of.steps.empty() ? repaired : of.left.empty() ? whole : kept);
 }
 
 std::string RepairTotals::text(bool is_dry_run) const {
     std::string text = fmt::format("{} {}: {} {}repaired, {} without a fault to repair", maps,
                                    maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "", whole);
+    if (kept > 0) text += fmt::format(", {} with what it does not repair", kept);
     if (refused > 0)
         text +=
             fmt::format(", {} {}not written, because an error would be left", refused, is_dry_run ? "would be " : "");

@@ -24,7 +24,7 @@ namespace tex::cli {
 
 // Counts of maps, for the last line.
 struct RepairTotals {
-    int maps = 0, repaired = 0, refused = 0, whole = 0;
+    int maps = 0, repaired = 0, refused = 0, kept = 0, whole = 0;  // kept: with faults that stay
 
     void add(const Repaired& of);
     [[nodiscard]] std::string text(bool is_dry_run) const;
