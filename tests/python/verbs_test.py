@@ -2,6 +2,7 @@
 """Every verb gives what the commands give, byte for byte."""
 
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -133,6 +134,19 @@ def test_unpack_and_decode_read_what_the_command_reads(commands, bricks, normals
     assert tex.guess_swizzle(texture) == "rg"
     assert tex.decode_file(commands.bytes("n.dds"), "x").levels[0] == texture.levels[0]
     assert tex.decode_file(bytearray(commands.bytes("n.dds"))).extent == tex.probe("n.dds") == (512, 512)
+
+
+def test_read_normals_warns_of_green_that_points_down(commands, normals):
+    tex.write_texture("down.png", tex.pack(normals, "rgb8", y_axis="down", y_known=False))
+    with pytest.warns(UserWarning, match="down.png: y is taken to point up"):
+        _, info = tex.read_normals("down.png")
+    assert info["y_doubtful"] and not info["y_known"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        right = tex.read_normals("down.png", unpack={"y_axis": "down"})[0][0]
+        tex.read_normals("down.png", doubt_y=False)
+        tex.write_texture("up.png", tex.pack(normals, "rgb8", y_known=False))
+        assert tex.compare(right, tex.read_normals("up.png")[0][0])["mean"] < 0.3  # the middle of 255 codes is none
 
 
 def test_transcode_is_what_gpus_show(normals):
