@@ -255,6 +255,11 @@ TEST_F(ModelInputs, TwoModelsAreComparedByTheirMaterials) {
     refuses("compare-normals a.gltf c.gltf --material wood", 4, "c.gltf: has no material \"wood\"");
     refuses("compare-normals a.gltf b.gltf --heatmap half.png", 2, "half.png");
     refuses("compare-normals a.gltf b.gltf --mesh a.gltf", 4, "--mesh is for maps without their mesh");
+    // The command that an error advises.
+    does("pack-normals n.png -o small.png --max-size 64 --format rgb8");
+    const std::string advised = "pack-normals a.gltf --material wood --max-size 64 -o SMALL.png";
+    refuses("compare-normals a.gltf small.png --material wood", 4, "; " + advised + " makes a map of that extent");
+    does(advised + "; compare-normals SMALL.png small.png --max 0.001");
     model("odd.gltf", R"(st/one\u001b[31m)", "wood");
     EXPECT_EQ(go("compare-normals odd.gltf odd.gltf").out.find("st/one\\x1b[31m:\nlevel "), 0u);
     refuses("compare-normals odd.gltf n.png", 4, "give --material, which is one of st/one\\x1b[31m, wood");

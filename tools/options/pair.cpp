@@ -139,7 +139,7 @@ Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, cons
         if (level_extent(large, halvings) != small) continue;
         const ComparedMap& larger = pair.maps[a_is_larger ? 0 : 1];
         const std::string map = !larger.model ? shell_word(larger.file)
-                                              : fmt::format("{} --material {}", shell_word(larger.path()),
+                                              : fmt::format("{} --material {}", shell_word(larger.model->file),
                                                             shell_word(larger.model->material));
         advice = fmt::format("; pack-normals {} --max-size {} -o SMALL{} makes a map of that extent", map,
                              std::max(small.width, small.height), larger.model ? ".png" : "");
