@@ -150,7 +150,7 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
         return Error{ErrorCode::bad_option, names[0], "a folder, and --heatmap, --report and --mesh are for two files"};
     const auto pairs = cli::folder_pairs(names[0], names[1], running_.read);
     if (!pairs) return pairs.error();
-    for (int k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < 2; ++k) {
         if (pairs->alone[k].empty()) continue;
         pair_.warn(console, names[k],
                    fmt::format("not compared, because {} has no file of that name: {}", names[1 - k],

@@ -221,8 +221,8 @@ private:
             // pack-normals reads other data in blue, and the channels of the X-Ray engine, only where it is told.
             const bool is_labpbr = report.swizzle == kSwizzleXy && format_info(report.format).channels > 2;
             const std::string layout = is_labpbr || has_rule(report, "N223") ? swizzle_word(report.swizzle) : "";
-            if (const std::optional<YAxis> y = likely_y(report)) {
-                file.settings = pack_step(y, report, layout);
+            if (const std::optional<YAxis> likely = likely_y(report)) {
+                file.settings = pack_step(likely, report, layout);
             } else {
                 // LabPBR has green down.
                 for (const YAxis y : {is_labpbr ? YAxis::down : YAxis::up, is_labpbr ? YAxis::up : YAxis::down})

@@ -10,7 +10,7 @@ namespace tex::inline v1 {
 void RdoBlocks::set_parts(std::vector<int> of_blocks) {
     part_of = std::move(of_blocks);
     parts.resize(static_cast<std::size_t>(*std::max_element(part_of.begin(), part_of.end())) + 1);
-    for (std::size_t block = 0; block < part_of.size(); ++block) ++part(block).blocks;
+    for (std::size_t index = 0; index < part_of.size(); ++index) ++part(index).blocks;
 }
 
 bool is_half(const RdoBlocks& band, const std::vector<bool>& parts) {

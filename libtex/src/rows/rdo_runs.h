@@ -34,7 +34,7 @@ struct RdoBlocks {
     std::vector<RdoPart> parts;
 
     [[nodiscard]] std::size_t count() const { return plain.size() / 16; }
-    [[nodiscard]] RdoPart& part(std::size_t block) { return parts[static_cast<std::size_t>(part_of[block])]; }
+    [[nodiscard]] RdoPart& part(std::size_t index) { return parts[static_cast<std::size_t>(part_of[index])]; }
     void set_parts(std::vector<int> of_blocks);
 };
 
