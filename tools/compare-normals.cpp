@@ -164,6 +164,7 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
     has_folders_ = true;
     auto code = cli::ExitCode::done;
     for (const auto& [a, b] : pairs->files) {
+        if (!console.host().interruption().empty()) break;
         run_.inputs = {a, b};
         run_.material.clear();
         if (!running_.json)

@@ -50,7 +50,7 @@ constexpr ForeignOption kForeignOptions[] = {
     {"--ao-samples --occlusion-samples --secondary-rays", "--rays-per-hit"},
     {"--ao --ao-out --occlusion --ambient-occlusion", "--occlusion-out"},
     {"--ao --occlusion --ambient-occlusion",
-     "--blue takes a file, as LabPBR does; in glTF, occlusion has a texture of its own, or the red of ORM"},
+     "--blue FILE writes it into blue, for LabPBR; glTF reads occlusion from red of another texture"},
     {"--displacement --displacement-out --disp", "--height-out"},
     {"--bent --bent-normal --bent-normals", "--bent-out"},
     {"--id --id-map", "--id-out"},

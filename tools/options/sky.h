@@ -15,8 +15,7 @@
 namespace tex::cli {
 
 // --occlusion-out, --occlusion-into, --sky-view-out, --bent-out, --horizon-out, --horizon-directions,
-// --occlusion-directions,
-// --occlusion-distance.
+// --occlusion-directions, --occlusion-distance.
 class SkyOptions {
 public:
     void add(Command& command, const FileOptions& files);

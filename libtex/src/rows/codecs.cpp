@@ -43,15 +43,12 @@ BlockEntries read_bc7_rxgb_entries(const std::byte* block) {
     for (auto& code : entries.code) code[0] = std::exchange(code[3], 255);
     return entries;
 }
-constexpr WholeBlocks kBc7RxgbBlocks = {.values = 4,
-                                        .encode = encode_bc7_rxgb,
-                                        .encode_values = nullptr,
-                                        .optimise = optimise_rgb_band,
-                                        .prepare = [](Format, Effort) {},
-                                        .is_prepared = [](Format, Effort) { return true; },
-                                        .memory = bc7_memory,
-                                        .rows_at_once = bc7_rows_at_once,
-                                        .read_entries = read_bc7_rxgb_entries};
+constexpr WholeBlocks kBc7RxgbBlocks = [] {
+    WholeBlocks blocks = kBc7Blocks;
+    blocks.encode = encode_bc7_rxgb;
+    blocks.read_entries = read_bc7_rxgb_entries;
+    return blocks;
+}();
 constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .encode = encode_uastc,
                                       .encode_values = nullptr,
@@ -62,15 +59,13 @@ constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .rows_at_once = uastc_rows_at_once,
                                       .read_entries = read_uastc_entries};
 
-constexpr WholeBlocks kUastcXyBlocks = {.values = 2,
-                                        .encode = encode_uastc_xy,
-                                        .encode_values = nullptr,
-                                        .optimise = optimise_rgb_band,
-                                        .prepare = [](Format, Effort) {},
-                                        .is_prepared = [](Format, Effort) { return true; },
-                                        .memory = uastc_xy_memory,
-                                        .rows_at_once = uastc_rows_at_once,
-                                        .read_entries = read_uastc_entries};
+constexpr WholeBlocks kUastcXyBlocks = [] {
+    WholeBlocks blocks = kUastcBlocks;
+    blocks.values = 2;
+    blocks.encode = encode_uastc_xy;
+    blocks.memory = uastc_xy_memory;
+    return blocks;
+}();
 
 void decode_row_of_texels(Format format, const std::byte* texels, int width, const ChannelRows& rows, std::ptrdiff_t) {
     decode_texels(format, texels, width, rows);
