@@ -30,8 +30,9 @@ declare -A packages=(
     [phaser]=phaser@4.2.1
     [cesium]=cesium@1.145.0
     [filament]=filament@1.53.4
+    [model-viewer]=@google/model-viewer@4.4.0
 )
-order=(three babylon playcanvas phaser cesium filament)
+order=(three babylon playcanvas phaser cesium filament model-viewer)
 all=
 [ $# -gt 0 ] || [ -n "$gate" ] || all=yes
 [ $# -gt 0 ] || set -- "${order[@]}"
@@ -48,7 +49,7 @@ for engine in "$@"; do
     [ -n "${packages[$engine]:-}" ] || { echo "$0: no engine $engine; one of ${order[*]}"; exit 2; }
     read -ra more <<<"${packages[$engine]}"
     wanted+=("${more[@]}")
-    case $engine in babylon | playcanvas) wanted+=("${packages[three]}") ;; esac # its transcoder
+    case $engine in babylon | playcanvas | model-viewer) wanted+=("${packages[three]}") ;; esac # its transcoder
 done
 missing=()
 for package in "${wanted[@]}"; do
@@ -85,7 +86,7 @@ draw() {
     "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \
         --external:fs --external:path
     case $engine in
-        three | babylon | playcanvas) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
+        three | babylon | playcanvas | model-viewer) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
         cesium) ln -sf "$place/node_modules/cesium/Build/Cesium" cesium ;;
         filament) ln -sf "$place/node_modules/filament" filament ;;
     esac

@@ -14,7 +14,7 @@ import cases
 import models
 
 NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "phaser": "Phaser",
-         "cesium": "Cesium", "filament": "filament"}
+         "cesium": "Cesium", "filament": "filament", "model-viewer": "model-viewer"}
 
 
 def row(cells):
