@@ -48,6 +48,9 @@ PLACES = {
     "playcanvas": [("own geometry", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
     "phaser": [("image", OWN), ("image, flipX", OWN), ("image, flipY", OWN), ("image, rotated by 90 degrees", OWN)],
     "cesium": [], "filament": [], "model-viewer": [("createTexture", PLAIN), ("createTexture, TANGENT", TANGENT)],
+    "godot": [("own geometry", OWN), ("own geometry, Image", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
+    "blender": [("own geometry", OWN), ("own geometry, Convention DirectX", OWN), ("glTF", PLAIN),
+                ("glTF, TANGENT", TANGENT)],
 }
 # What the gate draws, in the first two places of an engine, and what must be seen there.
 GATE = {
@@ -59,8 +62,9 @@ GATE = {
 CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper right", "image, flipY": "lower left",
            "image, rotated by 90 degrees": "upper right"}
 # The file types that an engine is given, if not all. (npm does not have Babylon.js' decoder of KTX2: see babylon.js.)
-TYPES = {"phaser": ("png",), "playcanvas": ("png", "dds", "ktx2"), "model-viewer": ("png", "ktx2")}
-DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament", "model-viewer")
+TYPES = {"phaser": ("png",), "playcanvas": ("png", "dds", "ktx2"), "model-viewer": ("png", "ktx2"),
+         "godot": ("png", "exr", "dds", "ktx2"), "blender": ("png", "exr", "dds")}
+DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament", "model-viewer", "godot", "blender")
 
 
 def file_of(name):

@@ -4,7 +4,8 @@
 #
 #     tests/engines/engines.sh [--build BUILD] [--gate] [ENGINE...]    default: build/release, all engines
 #
-# Prints what each shows, and what is right. After a run of all engines, tests/engines/RESULTS.md is written again.
+# Prints what each shows, and what is right. The verdicts are kept in BUILD/engines/results; once all engines have some,
+# tests/engines/RESULTS.md is written again, with the day of each. Godot and Blender are those of Debian sid (sid.sh).
 # --gate draws two files on three.js and Babylon.js and fails unless it sees what it must: PNG and, packed, BC5 on
 # three.js; PNG with and without the settings of the recipe on Babylon.js.
 #
@@ -31,10 +32,9 @@ declare -A packages=(
     [cesium]=cesium@1.145.0
     [filament]=filament@1.53.4
     [model-viewer]=@google/model-viewer@4.4.0
+    [godot]="" [blender]="" # of Debian sid, in a root of its own
 )
-order=(three babylon playcanvas phaser cesium filament model-viewer)
-all=
-[ $# -gt 0 ] || [ -n "$gate" ] || all=yes
+order=(three babylon playcanvas phaser cesium filament model-viewer godot blender)
 [ $# -gt 0 ] || set -- "${order[@]}"
 [ -z "$gate" ] || set -- three babylon
 for program in npm chromium python3; do
@@ -46,7 +46,7 @@ place=$build/engines
 mkdir -p "$place"
 wanted=(esbuild@0.28.2)
 for engine in "$@"; do
-    [ -n "${packages[$engine]:-}" ] || { echo "$0: no engine $engine; one of ${order[*]}"; exit 2; }
+    [ -n "${packages[$engine]+is}" ] || { echo "$0: no engine $engine; one of ${order[*]}"; exit 2; }
     read -ra more <<<"${packages[$engine]}"
     wanted+=("${more[@]}")
     case $engine in babylon | playcanvas | model-viewer) wanted+=("${packages[three]}") ;; esac # its transcoder
@@ -79,6 +79,7 @@ pack-normals plain.glb -o "$basis" --format uastc --no-sync --quiet
 # Draws the cases.json of this folder with an engine.
 draw() {
     local engine=$1 port status=0
+    case $engine in godot | blender) "$tests/sid.sh" "$place/sid" "$engine"; return ;; esac
     echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script>' \
         '<script type="module" src="page.js"></script>' >page.html
     cp "$tests/$engine.js" "$tests/page.js" "$tests/babylon-ktx2.js" "$place"
@@ -107,24 +108,44 @@ draw() {
     return "$status"
 }
 
+# Keeps the verdicts of an engine, what drew them, and when.
+keep() {
+    local name=${packages[$1]%% *} now
+    mkdir -p "$place/results/$1"
+    cp verdicts.json "$place/results/$1"
+    if [ -n "$name" ]; then
+        now=$(timeout 60 npm view "${name%@*}" version || echo unknown)
+        echo "${packages[$1]}"
+    else
+        now="that of Debian sid"
+        "$tests/sid.sh" "$place/sid" --version "$1"
+    fi >"$place/results/$1/packages"
+    printf '%s\n' "$now" >"$place/results/$1/newest"
+    date +%Y-%m-%d >"$place/results/$1/day"
+}
+
 failed=0
 for engine in "$@"; do
     mkdir "$engine"
     ln -s "$PWD"/*.png "$PWD"/*.dds "$PWD"/*.ktx2 "$PWD"/*.exr "$PWD"/models "$engine"
     cd "$engine"
     python3 "$tests/cases.py" ${gate:+--gate} "$engine"
-    echo "== ${packages[$engine]}"
-    draw "$engine" && python3 "$tests/judge.py" || failed=1
+    echo "== ${packages[$engine]:-$engine}"
+    status=0
+    draw "$engine" || status=$?
+    if [ "$status" -eq 0 ]; then python3 "$tests/judge.py" || status=$?; fi
+    case $status in
+        0) [ -n "$gate" ] || keep "$engine" ;;
+        77) echo "$engine: not drawn" ;;
+        *) failed=1 ;;
+    esac
     cd ..
 done
-if [ -n "$all" ] && [ "$failed" -eq 0 ]; then
-    pairs=()
-    for engine in "$@"; do
-        pairs+=("$engine=${packages[$engine]}")
-        name=${packages[$engine]%% *}
-        echo "$engine $(timeout 60 npm view "${name%@*}" version || echo unknown)" >>newest
-    done
-    python3 "$tests/tables.py" . "$(chromium --version 2>/dev/null)" newest "${pairs[@]}" >"$tests/RESULTS.md"
+# Each engine's last verdicts: a run of one engine brings its columns up to date.
+if [ -z "$gate" ] && [ "$failed" -eq 0 ]; then
+    if python3 "$tests/tables.py" "$place/results" "$(chromium --version 2>/dev/null)" >RESULTS.md; then
+        cp RESULTS.md "$tests/RESULTS.md"
+    fi
 fi
 [ -z "${KEEP:-}" ] || cp -r "$scratch" "$KEEP"
 exit "$failed"

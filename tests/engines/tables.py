@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""tables.py FOLDER CHROMIUM NEWEST ENGINE=PACKAGE...: prints RESULTS.md from FOLDER/<engine>/verdicts.json.
+"""tables.py FOLDER CHROMIUM: prints RESULTS.md from FOLDER/<engine>/verdicts.json.
 
-NEWEST is a file with the newest release of each engine's package on npm: a line "engine version".
+Beside each are "packages", what drew it, "newest", its newest release on npm, and "day".
 """
 
-import datetime
 import json
 import pathlib
 import sys
@@ -14,7 +13,8 @@ import cases
 import models
 
 NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "phaser": "Phaser",
-         "cesium": "Cesium", "filament": "filament", "model-viewer": "model-viewer"}
+         "cesium": "Cesium", "filament": "filament", "model-viewer": "model-viewer", "godot": "Godot",
+         "blender": "Blender"}
 
 
 def row(cells):
@@ -61,22 +61,27 @@ def models_table(found):
 
 
 def main():
-    folder, chromium, newest = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3]
-    packages = dict(argument.split("=", 1) for argument in sys.argv[4:])
-    now = dict(line.split() for line in pathlib.Path(newest).read_text(encoding="utf-8").splitlines())
+    folder, chromium = pathlib.Path(sys.argv[1]), sys.argv[2]
+    missing = [engine for engine in NAMES if not (folder / engine / "day").exists()]
+    if missing:
+        sys.exit(f"RESULTS.md stays as it is until these have been drawn: {', '.join(missing)}")
     found = {engine: json.loads((folder / engine / "verdicts.json").read_text(encoding="utf-8"))["cases"]
              for engine in NAMES}
-    print(f"""# What engines of the web draw
 
-Made by `tests/engines/engines.sh` on {datetime.date.today()}, in {chromium.split(" built")[0]} with SwiftShader.
+    def said(engine, name):
+        return (folder / engine / name).read_text(encoding="utf-8").strip()
+    print(f"""# What engines draw
+
+Made by `tests/engines/engines.sh`, in {chromium.split(" built")[0]} with SwiftShader; Godot with llvmpipe, Blender with
+Cycles, both of Debian sid.
 
 A bump in the upper left corner of a map is lit from above and from the left. "right" is a bump in the right corner
 that is light in its upper half under the first light and in its left half under the second; numbers are the means of
 the top, bottom, left and right halves, in codes of 255. "y wrong" is lit from below instead, "x wrong" from the right,
 and a dent from both.
 
-""" + table(["engine", "packages", "newest on npm that day"],
-            [[NAMES[engine], packages[engine], now.get(engine, "not known")] for engine in NAMES]))
+""" + table(["engine", "packages", "newest on npm that day", "drawn on"],
+            [[NAMES[engine], *(said(engine, name) for name in ("packages", "newest", "day"))] for engine in NAMES]))
     print("## Files\n\nIn the default settings of each engine, except for those that a column names. Models have no "
           "TANGENT\nif the column does not say so; the texture replaces the normal map of the model's material.\n")
     for engine in NAMES:
