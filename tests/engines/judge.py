@@ -7,17 +7,25 @@ same holds for the left and the right half. The judge looks for the bump in the 
 picture that lies upside down or is mirrored has it in another one, and measures halves around its centre. It adds
 "seen", "right", and the halves to each case, and writes verdicts.json. It fails if another thing is seen than a case
 wants.
+
+A picture that is right and upright is also compared with that of preview-normals for the same file, in ours: "agrees"
+is the share of pixels, under both lights, that are within 3 codes of it. How bright a light is is each engine's own
+matter, so its picture is first multiplied by one factor, in linear light, that makes the plane around the bump equal.
 """
 
 import json
 import math
 import pathlib
 import statistics
+import struct
 import sys
 
 CENTRE = (0.266, 0.281)  # of the bump, from the corner that it is in, as a share of the square
 RADIUS = 0.18
 LEAST = 12  # codes of 255 between halves that count as a difference
+CODES = 3
+# What does not encode its colours as sRGB: (engine, words of the place).
+LINEAR = [("babylon", "own geometry"), ("phaser", "image")]
 CORNERS = {"upper left": (0, 0), "upper right": (1, 0), "lower left": (0, 1), "lower right": (1, 1)}
 
 
@@ -69,6 +77,39 @@ def look_at(above, left):
     return words, corner, numbers
 
 
+def linear(code):
+    c = code / 255
+    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+
+
+def encoded(light):
+    light = min(max(light, 0), 1)
+    return 255 * (12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def codes_of_bmp(path, side):
+    """Red of a picture of 24 bits, whose rows begin at the bottom."""
+    data = path.read_bytes()
+    start, rows = struct.unpack_from("<I", data, 10)[0], []
+    for row in range(side):
+        rows.append(data[start + 3 * side * row + 2:start + 3 * side * (row + 1):3])
+    return [code for row in reversed(rows) for code in row]
+
+
+def agreement(case, engine, pictures, side):
+    """The share of pixels, in percent, that are within CODES of our picture of the same file."""
+    is_linear = any(engine == name and words in case["place"] and "PBR" not in case["place"] for name, words in LINEAR)
+    light_of = [code / 255 if is_linear else linear(code) for code in range(256)]
+    close = count = 0
+    for light, picture in pictures.items():
+        theirs = [light_of[code] for row in picture for code in row]
+        ours = codes_of_bmp(pathlib.Path("ours") / f"{case['map'] or 'map.png'}.{light}.bmp", side)
+        factor = linear(statistics.median(ours)) / max(statistics.median(theirs), 1e-6)
+        close += sum(abs(encoded(factor * value) - code) <= CODES + 0.5 for value, code in zip(theirs, ours))
+        count += len(ours)
+    return round(100 * close / count, 1)
+
+
 def judge(case, pictures):
     width = len(pictures["above"][0])
     squares = [(0, width, case["corner"])]
@@ -92,12 +133,17 @@ def main():
         files = {light: pathlib.Path(f"{case['id']}.{light}.grey") for light in job["lights"]}
         if all(file.exists() for file in files.values()):
             pictures = {light: file.read_bytes() for light, file in files.items()}
-            judge(case, {light: [codes[at:at + job["side"]] for at in range(0, len(codes), job["side"])]
-                         for light, codes in pictures.items()})
+            rows = {light: [codes[at:at + job["side"]] for at in range(0, len(codes), job["side"])]
+                    for light, codes in pictures.items()}
+            judge(case, rows)
+            if (case["right"] and case["corner"] == "upper left" and not case["dent"] and not case["halves"] and
+                    pathlib.Path("ours").exists()):
+                case["agrees"] = agreement(case, job["engine"], rows, job["side"])
         else:
             case.update(seen="refused", right=False, halves_of=[])
         print(f"{case['table']:7}{case['name']:30}{case['place']:52}{'right' if case['right'] else 'WRONG':7}"
-              f"{case['seen']:32}{case['halves_of']} {case['said'].splitlines()[0][:100] if case['said'] else ''}")
+              f"{case['seen']:32}{case['halves_of']} "
+              f"{case.get('agrees', '')} {case['said'].splitlines()[0][:100] if case['said'] else ''}")
         if case.get("wanted", "") not in ("", case["seen"]):
             print(f"    wanted: {case['wanted']}")
             failed = True

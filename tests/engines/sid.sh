@@ -54,7 +54,7 @@ case $engine in
         # What the recipe sets in the Import dock is in the file that a first import makes.
         inside 'godot --headless --import'
         sed -i -e 's|^compress/mode=0|compress/mode=2|; s|^compress/normal_map=0|compress/normal_map=1|' \
-            -e 's|^mipmaps/generate=false|mipmaps/generate=true|' ./*.png.import
+            -e 's|^mipmaps/generate=false|mipmaps/generate=true|' $(find . -name '*.png.import' -not -path './models/*')
         inside 'godot --headless --import'
         inside "${DRAW:-$godot --resolution 64x64 --script godot.gd}"
         ;;
