@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::span<const std::byte> all(reinterpret_cast<const std::byte*>(data), size);
     const int across = data[0] % 48 + 1, down = data[1] % 48 + 1;
     const std::size_t in_slice =
-        std::min<std::size_t>(data[2] | data[3] << 8, size - kChoices - tex::kBasisHeaderBytes);
+        std::min(data[2] | std::size_t{data[3]} << 8, size - kChoices - tex::kBasisHeaderBytes);
     const auto slice = all.subspan(kChoices, in_slice);
     const auto head = all.subspan(kChoices + in_slice, tex::kBasisHeaderBytes);
     const auto books = tex::read_basis_codebooks(head, all.subspan(kChoices + in_slice + tex::kBasisHeaderBytes));
