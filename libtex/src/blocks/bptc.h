@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,23 +16,26 @@ namespace tex::inline v1 {
 class BptcBits {
 public:
     explicit BptcBits(const std::byte* block) {
-        for (int k = 7; k >= 0; --k) {
-            low_ = low_ << 8 | std::to_integer<std::uint64_t>(block[k]);
-            high_ = high_ << 8 | std::to_integer<std::uint64_t>(block[8 + k]);
-        }
+        static_assert(std::endian::native == std::endian::little);
+        std::memcpy(&low_, block, sizeof low_);
+        std::memcpy(&high_, block + sizeof low_, sizeof high_);
     }
 
     // The next `count` bits, at most 31.
     unsigned take(int count) {
         const auto bits = static_cast<unsigned>(low_ & ((std::uint64_t{1} << count) - 1));
-        if (count == 0) return 0;
-        low_ = low_ >> count | high_ << (64 - count);
-        high_ >>= count;
+        skip(count);
         return bits;
     }
 
     // The next 64 bits, which stay.
     [[nodiscard]] std::uint64_t next() const { return low_; }
+
+    // Leaves out `count` bits, at most 63.
+    void skip(int count) {
+        low_ = low_ >> count | high_ << 1 << (63 - count);
+        high_ >>= count;
+    }
 
 private:
     std::uint64_t low_ = 0, high_ = 0;

@@ -16,7 +16,6 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr int kMostSubsets = 3;
 constexpr int kLongestUastcCode = 7;
 
 // The mode that the lowest bits of a block stand for; kUastcModes for the code that is reserved.
@@ -44,7 +43,7 @@ int read_second_channel(BptcBits& bits, const UastcMode& mode) {
     return mode.channels == 2 ? kAlpha : static_cast<int>(bits.take(2));
 }
 
-// All trits or quints come first, then the bits of each value.
+// All trits or quints come first, then the bits of each value: at most 42 and 64.
 void read_endpoint_values(BptcBits& bits, int range, int count, std::uint8_t* values) {
     constexpr int kTritBits[] = {0, 2, 4, 5, 7, 8}, kQuintBits[] = {0, 3, 5, 7};
     const AstcRange r = kAstcRangeTable[range];
@@ -60,56 +59,52 @@ void read_endpoint_values(BptcBits& bits, int range, int count, std::uint8_t* va
     };
     if (r.upper == 3) read_uppers(std::integral_constant<unsigned, 3>(), 5, kTritBits);
     if (r.upper == 5) read_uppers(std::integral_constant<unsigned, 5>(), 3, kQuintBits);
-    for (int k = 0; k < count; ++k) {
-        const unsigned stored = bits.take(r.bits) | static_cast<unsigned>(uppers[k]) << r.bits;
-        values[k] = kAstcMeanings.color[range][stored];
-    }
+    std::uint64_t rest = bits.next();
+    const unsigned mask = (1u << r.bits) - 1;
+    for (int k = 0; k < count; ++k, rest >>= r.bits)
+        values[k] = kAstcMeanings.color[range][(rest & mask) | static_cast<unsigned>(uppers[k]) << r.bits];
+    bits.skip(count * r.bits / 2);
+    bits.skip(count * r.bits - count * r.bits / 2);
 }
 
+// Adds the highest bits that anchors lack. Then all weights have as many bits: eight texels at most 40.
 void read_weights(BptcBits& bits, const UastcMode& mode, const UastcPattern& pattern, const std::uint8_t* meaning,
                   std::uint8_t weights[2][kUastcTexels]) {
-    const int count = mode.weight_bits;
-    if (mode.subsets > 1 || count == 5) {
-        for (int k = 0; k < kUastcTexels; ++k) {
-            for (int plane = 0; plane < mode.planes; ++plane)
-                weights[plane][k] = meaning[bits.take(count - (pattern.is_anchor[k] ? 1 : 0))];
-        }
-        return;
-    }
-    // Only texel 0 is an anchor. All others have at most 60 bits.
-    const bool has_second = mode.planes == 2;
-    weights[0][0] = meaning[bits.take(count - 1)];
-    if (has_second) weights[1][0] = meaning[bits.take(count - 1)];
-    std::uint64_t rest = bits.next();
+    constexpr int kAtOnce = 8;
+    const int count = mode.weight_bits, of_texel = count * mode.planes;
     const unsigned mask = (1u << count) - 1;
-    for (int k = 1; k < kUastcTexels; ++k, rest >>= count) {
-        weights[0][k] = meaning[static_cast<unsigned>(rest) & mask];
-        if (!has_second) continue;
-        rest >>= count;
-        weights[1][k] = meaning[static_cast<unsigned>(rest) & mask];
+    for (int first = 0; first < kUastcTexels; first += kAtOnce) {
+        std::uint64_t rest = bits.next();
+        int lacking = 0;
+        for (int s = 0; s < mode.subsets; ++s) {
+            const int k = pattern.anchor[s] - first;
+            if (k < 0 || k >= kAtOnce) continue;
+            for (int plane = 0; plane < mode.planes; ++plane, ++lacking) {
+                const std::uint64_t below = rest & ((std::uint64_t{1} << (k * of_texel + (plane + 1) * count - 1)) - 1);
+                rest = (rest - below) << 1 | below;
+            }
+        }
+        bits.skip(kAtOnce * of_texel - lacking);
+        for (int k = first; k < first + kAtOnce; ++k, rest >>= of_texel) {
+            weights[0][k] = meaning[static_cast<unsigned>(rest) & mask];
+            weights[1][k] = meaning[static_cast<unsigned>(rest >> count) & mask];  // of use with two planes
+        }
     }
 }
 
-// The codes of one channel between the endpoints of each subset.
-struct UastcEnds {
-    int begin[kMostSubsets], step[kMostSubsets];
+// A code between two ends, 0 to 255, by a weight, 0 to 64.
+std::uint8_t code_between(int e0, int e1, int weight) {
+    return static_cast<std::uint8_t>((257 * ((64 - weight) * e0 + weight * e1) + 32) >> 14);
+}
 
-    void set(int subset, int e0, int e1) {
-        begin[subset] = 257 * 64 * e0 + 32;
-        step[subset] = 257 * (e1 - e0);
+// Codes of texels between two ends, 0 to 255, by their weights, 0 to 64: as code_between(), in 16 bits.
+void interpolate(int e0, int e1, const std::uint8_t* weights, std::uint8_t* codes) {
+    const auto begin = static_cast<std::uint16_t>(64 * e0), step = static_cast<std::uint16_t>(e1 - e0);
+#pragma GCC unroll 1  // as a loop, it becomes vectors
+    for (int k = 0; k < kUastcTexels; ++k) {
+        const auto x = static_cast<std::uint16_t>(begin + step * weights[k]);
+        codes[k] = static_cast<std::uint8_t>((x + ((x + 32) >> 8)) >> 6);
     }
-    [[nodiscard]] std::uint8_t code(int subset, std::uint8_t weight) const {
-        return static_cast<std::uint8_t>((begin[subset] + step[subset] * weight) >> 14);
-    }
-};
-
-void interpolate(const UastcEnds& ends, int subsets, const std::uint8_t* subset, const std::uint8_t* weights,
-                 std::uint8_t* codes) {
-    if (subsets == 1) {
-        for (int k = 0; k < kUastcTexels; ++k) codes[k] = ends.code(0, weights[k]);
-        return;
-    }
-    for (int k = 0; k < kUastcTexels; ++k) codes[k] = ends.code(subset[k], weights[k]);
 }
 
 void fill(const std::uint8_t (&color)[4], std::uint8_t channels[4][16]) {
@@ -146,12 +141,14 @@ void decode_uastc(const std::byte* block, std::uint8_t channels[4][16]) {
             std::fill_n(channels[c], kUastcTexels, std::uint8_t{255});
             continue;
         }
-        UastcEnds line = {};
-        for (int s = 0; s < mode.subsets; ++s) {
+        const std::uint8_t* const w = weights[c == second_channel ? 1 : 0];
+        interpolate(ends[2 * stored], ends[2 * stored + 1], w, channels[c]);
+        for (int s = 1; s < mode.subsets; ++s) {
             const std::uint8_t* const e = ends + 2 * (mode.channels * s + stored);
-            line.set(s, e[0], e[1]);
+            std::uint8_t codes[kUastcTexels];
+            interpolate(e[0], e[1], w, codes);
+            for (int k = 0; k < kUastcTexels; ++k) channels[c][k] = pattern->subset[k] == s ? codes[k] : channels[c][k];
         }
-        interpolate(line, mode.subsets, pattern->subset, weights[c == second_channel ? 1 : 0], channels[c]);
     }
 }
 
@@ -218,10 +215,8 @@ BlockEntries read_uastc_entries(const std::byte* block) {
     for (int n = 0; n < entries.total(); ++n) {
         const int s = n / entries.count, e = n % entries.count;
         for (int c = 0; c < 4; ++c) {
-            UastcEnds line = {};
-            line.set(0, parts->end(s, c, 0), parts->end(s, c, 1));
             const int index = c == parts->second_channel ? e >> mode.weight_bits : e & ((1 << mode.weight_bits) - 1);
-            entries.code[n][c] = line.code(0, meaning[index]);
+            entries.code[n][c] = code_between(parts->end(s, c, 0), parts->end(s, c, 1), meaning[index]);
         }
     }
     return entries;

@@ -22,7 +22,10 @@ UastcPattern make_pattern(int subsets, unsigned partition) {
     UastcPattern pattern;
     astc_partitions({4, 4}, subsets, partition, pattern.subset);
     for (int s = 0; s < subsets; ++s)
-        pattern.is_anchor[std::find(pattern.subset, pattern.subset + kUastcTexels, s) - pattern.subset] = true;
+        pattern.anchor[s] =
+            static_cast<std::uint8_t>(std::find(pattern.subset, pattern.subset + kUastcTexels, s) - pattern.subset);
+    std::sort(pattern.anchor, pattern.anchor + subsets);
+    for (int s = 0; s < subsets; ++s) pattern.is_anchor[pattern.anchor[s]] = true;
     for (int k = 0; k < kUastcTexels; ++k)
         pattern.texels[pattern.subset[k]] = static_cast<std::uint16_t>(pattern.texels[pattern.subset[k]] | 1u << k);
     return pattern;

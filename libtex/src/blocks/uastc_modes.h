@@ -36,6 +36,7 @@ inline constexpr int kUastcWeightRanges[] = {0, 0, 2, 5, 8, 11};
 struct UastcPattern {
     std::uint8_t subset[kUastcTexels] = {};
     bool is_anchor[kUastcTexels] = {};  // the first texel of its subset: its weight lacks the highest bit
+    std::uint8_t anchor[3] = {};        // these texels, in their order
     std::uint16_t texels[3] = {};       // of each subset: bit k is texel k
 };
 

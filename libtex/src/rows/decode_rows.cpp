@@ -46,27 +46,37 @@ void decode_row_of_bptc(Format format, const std::byte* blocks, int width, const
     }
 }
 
-// UASTC and ETC1S, whose codes are of 8 bits.
+// UASTC and ETC1S, whose codes are of 8 bits. They are collected in rows, which become floats as those of formats
+// without blocks.
 void decode_row_of_basis(Format format, const std::byte* blocks, int width, const ChannelRows& rows,
                          std::ptrdiff_t stride) {
-    constexpr int kTexels = kBlockEdge * kBlockEdge;
-    const std::size_t block_bytes = format_info(format).block_bytes;
+    constexpr int kTexels = kBlockEdge * kBlockEdge, kAtOnce = 256;
+    const FormatInfo info = format_info(format);
+    std::byte collected[4][kBlockEdge][kAtOnce];
     std::uint8_t codes[4][kTexels];
     std::uint8_t* wanted[4];
     for (int c = 0; c < 4; ++c) wanted[c] = rows.channel[c] == nullptr ? nullptr : codes[c];
-    for (std::ptrdiff_t at = 0; at < width; at += kBlockEdge, blocks += block_bytes) {
-        if (format == Format::uastc_4x4_unorm) {
-            decode_uastc(blocks, codes);
-        } else {
-            decode_etc1s(blocks, wanted);
-            std::uint8_t* const alpha[3] = {nullptr, wanted[3], nullptr};
-            if (format == Format::etc1s_rgba_unorm) decode_etc1s(blocks + kEtc1sBlockBytes, alpha);
+    for (std::ptrdiff_t first = 0; first < width; first += kAtOnce) {
+        const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kAtOnce, width - first);
+        for (std::ptrdiff_t at = 0; at < count; at += kBlockEdge, blocks += info.block_bytes) {
+            if (format == Format::uastc_4x4_unorm) {
+                decode_uastc(blocks, codes);
+            } else {
+                decode_etc1s(blocks, wanted);
+                std::uint8_t* const alpha[3] = {nullptr, wanted[3], nullptr};
+                if (format == Format::etc1s_rgba_unorm) decode_etc1s(blocks + kEtc1sBlockBytes, alpha);
+            }
+            for (int c = 0; c < info.channels; ++c) {
+                if (wanted[c] == nullptr) continue;
+                for (int j = 0; j < kBlockEdge; ++j)
+                    std::memcpy(collected[c][j] + at, codes[c] + j * kBlockEdge, kBlockEdge);
+            }
         }
-        for (int c = 0; c < format_info(format).channels; ++c) {
-            if (rows.channel[c] == nullptr) continue;
-            float* const out = rows.channel[c] + at;
-            for (int k = 0; k < kTexels; ++k)
-                out[k / kBlockEdge * stride + k % kBlockEdge] = static_cast<float>(codes[c][k]) / 255.0f;
+        // Rows have room for whole blocks.
+        const auto samples = static_cast<int>((count + kBlockEdge - 1) / kBlockEdge * kBlockEdge);
+        for (int c = 0; c < info.channels; ++c) {
+            for (int j = 0; wanted[c] != nullptr && j < kBlockEdge; ++j)
+                decode_samples(info.sample, info.bits, collected[c][j], 1, samples, rows.channel[c] + j * stride + first);
         }
     }
 }
