@@ -170,6 +170,7 @@ cli::ExitCode BuildNormals::watch(cli::Console& console) {
     const auto load = [&](const cli::FolderVisitor& entered) {
         auto tree = read(console);
         if (tree) find(**tree, entered, console);
+        if (tree) (*tree)->work.other_pictures.clear();  // each build would count them
         return tree;
     };
     return cli::watch(manifest(), load, build_, running_, console);

@@ -24,6 +24,7 @@ BuildState some_state() {
     state.memos["\xff'.png"] = memo;
     state.outputs["out/a.dds"] = {"a\nb.png", digest_of("s"), digest_of("i"), {{"out/a\t.dds", digest_of("o")}}};
     state.outputs["out/b.dds"] = {"b", digest_of("s"), digest_of("i"), {}, {{"b\n", digest_of("b")}}};
+    state.outputs["out/b.dds"].warnings = {{"b", "a\tb\n%"}, {"b", "", true}};
     state.settings[digest_of("s")] = {{"blend tiling", "8\t%"}, {"bake no-data", ""}};
     state.outputs["none"] = {"x", {}, {}, {}};
     return state;
@@ -110,10 +111,13 @@ TEST(Cache, FindsDamagedEntries) {
     ASSERT_TRUE(cache.open(false));
     const Digest key = digest_of("key");
     const WriteOptions write;
+    const std::vector<FileWarning> warnings = {{"", "is flat"}, {"", "a\tb", true}};
     EXPECT_TRUE(cache.fetch(key, one_file(scratch.path("b")), write)->empty());
-    ASSERT_TRUE(cache.store(key, one_file(scratch.path("a")), {"contents"}));
+    EXPECT_TRUE(cache.warnings(key).empty());
+    ASSERT_TRUE(cache.store(key, one_file(scratch.path("a")), {"contents"}, warnings));
     EXPECT_FALSE(cache.fetch(key, one_file(scratch.path("b")), write)->empty());
     EXPECT_EQ(scratch.read("b"), "contents");
+    EXPECT_EQ(cache.warnings(key), warnings);
     const std::string entry = "cache/" + key.hex().substr(0, 2) + "/" + key.hex();
     const std::string whole = scratch.read(entry);
     for (std::size_t k = 0; k < whole.size(); ++k) {
@@ -133,7 +137,7 @@ TEST(Cache, RemovesWhatWasUsedLongestAgo) {
     Cache cache(scratch.path("cache"));
     ASSERT_TRUE(cache.open(false));
     for (const char* name : {"1", "2", "3"}) {
-        ASSERT_TRUE(cache.store(digest_of(name), one_file(scratch.path("a")), {std::string(1000, 'a')}));
+        ASSERT_TRUE(cache.store(digest_of(name), one_file(scratch.path("a")), {std::string(1000, 'a')}, {}));
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     EXPECT_FALSE(cache.fetch(digest_of("1"), one_file(scratch.path("b")), {})->empty());

@@ -3,10 +3,12 @@
 
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tex/types.h>
@@ -21,7 +23,17 @@ using Json =
 struct FileWarning {
     std::string file;
     std::string message;
+    bool is_counted = false;  // printed once for all files that call for it
+
+    friend bool operator==(const FileWarning&, const FileWarning&) = default;
 };
+
+// Adds warnings that are not there yet: two flows may have read the same files.
+inline void add_new(std::vector<FileWarning>&& more, std::vector<FileWarning>& all) {
+    for (FileWarning& warning : more) {
+        if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(std::move(warning));
+    }
+}
 
 // Warnings as --json prints them, with --quiet too.
 [[nodiscard]] inline Json warnings_json(const std::vector<FileWarning>& warnings) {

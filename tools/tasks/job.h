@@ -59,8 +59,8 @@ public:
         warnings_.push_back({name_for(file), std::move(sentence)});
     }
     // A warning that the command prints once for many files: only --json prints it for each.
-    void remark(std::string sentence, const std::string& file = {}) {
-        remarks_.push_back({name_for(file), std::move(sentence)});
+    void remark(std::string sentence, const std::string& file = {}, bool is_counted = false) {
+        remarks_.push_back({name_for(file), std::move(sentence), is_counted});
     }
     void say(std::string_view text) { text_ += text; }  // on standard output, unless --json is given
     // The run exits with this code or a higher one. `why` is for build-normals: a clause without the name of the file.

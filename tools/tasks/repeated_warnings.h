@@ -17,7 +17,10 @@ class RepeatedWarnings {
 public:
     // Adds a warning about `path`, which stands in the JSON of its job. Any thread may call this.
     void add(Job& job, const std::string& path, const std::string& sentence) {
-        job.remark(sentence, path);
+        job.remark(sentence, path, true);
+        add(path, sentence);
+    }
+    void add(const std::string& path, const std::string& sentence) {
         const std::lock_guard lock(mutex_);
         Files& files = files_[sentence];
         // Files that are read in parallel arrive in any order. The alphabetically first one is named.

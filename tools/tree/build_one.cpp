@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <iterator>
 #include <new>
 #include <set>
 #include <system_error>
@@ -27,9 +28,6 @@ namespace tex::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// For textures, which are as large as they are.
-constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
 
 // The output of `maker` that the recipe reads.
 std::string needed_file(const BuildTask& maker, const std::vector<Recipe>& recipes, const Recipe& recipe) {
@@ -123,69 +121,6 @@ Result<Made> BuildRun::make(const BuildTask& task, const std::vector<Stale>& sta
     return made;
 }
 
-// Takes outputs from the cache, and off the list of those to make.
-Result<void> BuildRun::fetch(const BuildTask& task, Judgement& judgement, Placement& placement, Outcome& outcome) {
-    if (!cache_.is_used()) return {};
-    std::vector<Stale> left;
-    for (Stale& stale : judgement.stale) {
-        const OutputFiles files = paths_of(task, stale.index);
-        for (const std::string& path : files.all()) {
-            if (auto created = create_folders_of(path); !created) return created;
-        }
-        const auto found =
-            cache_.fetch(key_of(stale.settings, judgement.inputs.digest), files, placement.watched(write_));
-        if (!found) return with_remedy(found.error(), contents_.path(task.outputs[stale.index]));
-        if (found->empty()) {
-            left.push_back(std::move(stale));
-        } else {
-            record(task, stale, judgement.inputs, *found, placement, outcome);
-        }
-    }
-    judgement.stale = std::move(left);
-    return {};
-}
-
-// The files of an output as paths.
-OutputFiles BuildRun::paths_of(const BuildTask& task, std::size_t output) const {
-    OutputFiles files = recipes_[task.recipe].files_of(task.input, output);
-    for (std::string& file : files.levels) file = contents_.path(file);
-    for (std::string& file : files.files) file = contents_.path(file);
-    return files;
-}
-
-std::string BuildRun::name_of_path(const std::string& path) const {
-    const bool is_below = !options_.root.empty() && path.starts_with(options_.root + "/");
-    return is_below ? path.substr(options_.root.size() + 1) : path;
-}
-
-// Records an output that is in its place.
-void BuildRun::record(const BuildTask& task, const Stale& made, const Inputs& inputs,
-                      const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
-    PlacedFiles files;
-    for (const std::string& path : paths) {
-        const auto placed = placement.placed().find(path);
-        if (placed != placement.placed().end()) files.emplace_back(name_of_path(path), placed->second);
-    }
-    for (const auto& [name, file] : files) outcome.outputs.push_back(name);
-    if (options_.lists_made) {
-        outcome.text +=
-            fmt::format("{} -> {}\n", printable(task.input), printable(with_level(name_of_path(paths.front()), 0)));
-    }
-    judge_.record(task, made, inputs, files);
-}
-
-// Records what has taken its place although the whole failed, so that it can be found and replaced.
-void BuildRun::record_parts(const BuildTask& task, const Placement& placement) {
-    for (std::size_t k = 0; k < task.outputs.size(); ++k) {
-        PlacedFiles files;
-        for (const std::string& path : paths_of(task, k).all()) {
-            const auto placed = placement.placed().find(path);
-            if (placed != placement.placed().end()) files.emplace_back(name_of_path(path), placed->second);
-        }
-        if (!files.empty()) judge_.record_part(task, task.outputs[k], files);
-    }
-}
-
 void BuildRun::list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) {
     ++totals_.made;
     outcome.report["status"] = "stale";
@@ -257,6 +192,7 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     if (judgement.stale.empty()) {
         ++totals_.cached;
         outcome.report["status"] = "cached";
+        say_again(std::move(judgement.warnings), outcome);
         return true;
     }
     Placement placement(files_, std::move(files), is_unchanged);
@@ -278,10 +214,18 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
         outcome.report["status"] = "refused";
         return true;
     }
+    std::vector<FileWarning> warnings = made->warnings;
+    std::copy_if(made->remarks.begin(), made->remarks.end(), std::back_inserter(warnings),
+                 [](const FileWarning& remark) { return remark.is_counted; });
+    std::erase_if(judgement.warnings, [&](FileWarning standing) {
+        standing.file = contents_.path(standing.file);
+        return std::find(warnings.begin(), warnings.end(), standing) != warnings.end();
+    });
+    say_again(std::move(judgement.warnings), outcome);
     for (std::size_t k = 0; k < judgement.stale.size(); ++k) {
         const Stale& stale = judgement.stale[k];
-        record(task, stale, judgement.inputs, made->files[k], placement, outcome);
-        if (cache_.is_used()) store(task, stale, judgement.inputs, made->files[k], placement, outcome);
+        record(task, stale, judgement.inputs, made->files[k], placement, warnings, outcome);
+        if (cache_.is_used()) store(task, stale, judgement.inputs, made->files[k], placement, warnings, outcome);
     }
     texels_ += made->report.extent.texels();
     outcome.report["status"] = "made";
@@ -290,23 +234,6 @@ Result<bool> BuildRun::make_stale(const BuildTask& task, Judgement judgement,
     outcome.report["bytes"] = made->report.bytes;
     ++totals_.made;
     return true;
-}
-
-// Puts an output into the cache, unless another program has replaced it.
-void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inputs,
-                     const std::vector<std::string>& paths, const Placement& placement, Outcome& outcome) {
-    if (cache_is_full_) return;
-    std::vector<std::string> contents;
-    for (const std::string& path : paths) {
-        auto bytes = read_text_file(path, kNoLimit);
-        const auto placed = placement.placed().find(path);
-        if (!bytes || placed == placement.placed().end() || digest_of(*bytes) != placed->second.digest) return;
-        contents.push_back(std::move(*bytes));
-    }
-    const auto stored = cache_.store(key_of(made.settings, inputs.digest), paths_of(task, made.index), contents);
-    if (stored || (stored.error().detail == ErrorDetail::no_space && cache_is_full_.exchange(true))) return;
-    outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message() +
-                                                (cache_is_full_ ? "; nothing else is put there" : "")});
 }
 
 // A texture that needs `name` fails in the same way as that did.
@@ -346,6 +273,7 @@ Result<void> BuildRun::bring_up_to_date(std::size_t index, double& counted, Outc
         if (judged->stale.empty()) {
             ++totals_.current;
             outcome.report["status"] = "current";
+            say_again(std::move(judged->warnings), outcome);
             return {};
         }
         const Stale& first = judged->stale.front();

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "tasks/outcome.h"
+#include "tasks/repeated_warnings.h"
 #include "tree/builder.h"
 #include "tree/cache.h"
 #include "tree/judge.h"
@@ -24,13 +26,17 @@
 
 namespace tex::cli {
 
+// For textures, which are as large as they are.
+inline constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
+
 // What happened to the textures.
 struct BuildTotals {
     std::atomic<std::size_t> made{0}, cached{0}, current{0}, failed{0}, pruned{0};
 };
 
 // The last line of --json.
-ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, bool is_interrupted, Console& console);
+ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, std::size_t without_rule,
+                            bool is_interrupted, Console& console);
 
 class BuildRun {
 public:
@@ -71,10 +77,11 @@ private:
     [[nodiscard]] OutputFiles paths_of(const BuildTask& task, std::size_t output) const;
     [[nodiscard]] std::string name_of_path(const std::string& path) const;
     void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
-                const Placement& placement, Outcome& outcome);
+                const Placement& placement, std::vector<FileWarning> warnings, Outcome& outcome);
+    void say_again(std::vector<FileWarning> warnings, Outcome& outcome);
     void record_parts(const BuildTask& task, const Placement& placement);
     void store(const BuildTask& task, const Stale& made, const Inputs& inputs, const std::vector<std::string>& paths,
-               const Placement& placement, Outcome& outcome);
+               const Placement& placement, std::vector<FileWarning> warnings, Outcome& outcome);
     void list_stale(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome);
     void list_current(const BuildTask& task, const std::vector<Stale>& stale, Outcome& outcome) const;
     Result<bool> refuses_input(const BuildTask& task, Outcome& outcome);
@@ -112,7 +119,8 @@ private:
     std::atomic<bool> is_full_{false};        // no space is left for outputs,
     std::atomic<bool> cache_is_full_{false};  // or for entries of the cache
     BuildTotals totals_;
-    bool lost_names_ = false;  // outputs were removed from the state
+    RepeatedWarnings repeated_;  // of outputs that stand
+    bool lost_names_ = false;    // outputs were removed from the state
     std::atomic<std::size_t> finished_{0};
     std::atomic<double> done_bytes_{0.0};
     double all_bytes_ = 1.0;

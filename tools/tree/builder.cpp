@@ -317,6 +317,10 @@ ExitCode BuildRun::run() {
     host.begin();
     read_state();
     run_tasks();
+    if (options_.dry_run && !running_.json) {
+        for (const std::string& picture : work_.other_pictures)
+            std::ignore = console_.print(printable(picture) + ": has no rule\n");
+    }
     if (is_full_) reporter_.report_waiting();
     ExitCode code = reporter_.exit_code();
     for (const std::string& folder : work_.unreadable) {
@@ -345,23 +349,27 @@ ExitCode BuildRun::run() {
         for (const ReadyCommand& command : recipe.before()) finish(command);
         for (const RecipeOutput& output : recipe.outputs()) finish(output.last);
     }
+    repeated_.print(console_);
     return std::max(code, print_summary(false));
 }
 
-ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, bool is_interrupted, Console& console) {
+ExitCode print_json_summary(const BuildTotals& totals, std::size_t untried, std::size_t without_rule,
+                            bool is_interrupted, Console& console) {
     return console.print(to_report_line({{"made", totals.made.load()},
                                          {"current", totals.current.load()},
                                          {"cached", totals.cached.load()},
                                          {"failed", totals.failed.load()},
                                          {"untried", untried},
                                          {"removed", totals.pruned.load()},
+                                         {"without_rule", without_rule},
                                          {"interrupted", is_interrupted}}));
 }
 
 // Prints what happened to the textures: a line of JSON with --json, a line for people without.
 ExitCode BuildRun::print_summary(bool is_interrupted) {
     if (running_.json)
-        return print_json_summary(totals_, work_.tasks.size() - finished_.load(), is_interrupted, console_);
+        return print_json_summary(totals_, work_.tasks.size() - finished_.load(),
+                                  work_.without_rule.size() + work_.other_pictures.size(), is_interrupted, console_);
     if (running_.quiet) return ExitCode::done;
     std::string summary = fmt::format("{} {}, {} up to date", totals_.made.load(),
                                       options_.dry_run ? "to make" : "made", totals_.current.load());
@@ -374,6 +382,10 @@ ExitCode BuildRun::print_summary(bool is_interrupted) {
     if (is_full_) summary += fmt::format(", {} not tried", work_.tasks.size() - finished_.load());
     if (totals_.pruned > 0)
         summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
+    if (const std::size_t count = work_.other_pictures.size(); count > 0) {
+        summary += fmt::format("; {} other picture{} no rule{}", count, count == 1 ? " has" : "s have",
+                               options_.dry_run ? "" : " (--dry-run lists them)");
+    }
     return console_.print(summary + "\n");
 }
 

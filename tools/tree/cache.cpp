@@ -14,6 +14,7 @@
 #include "cli/text_file.h"
 #include "tasks/name_pattern.h"
 #include "tree/cache_folder.h"
+#include "tree/state.h"
 
 namespace tex::cli {
 namespace {
@@ -39,6 +40,7 @@ bool has_parts(const OutputFiles& output) { return !output.levels.empty() || out
 Digest key_of_part(const Digest& key, const std::string& part) {
     return Sha256().add(key.bytes.data(), key.bytes.size()).add(part).finish();
 }
+Digest warnings_key(const Digest& key) { return key_of_part(key, "warnings"); }
 Digest count_key(const Digest& key) { return key_of_part(key, "levels"); }
 Digest part_key(const Digest& key, std::size_t part) { return key_of_part(key, std::to_string(part)); }
 
@@ -101,8 +103,16 @@ Result<std::vector<std::string>> Cache::fetch(const Digest& key, const OutputFil
     return files;
 }
 
-Result<void> Cache::store(const Digest& key, const OutputFiles& output,
-                          const std::vector<std::string>& contents) const {
+std::vector<FileWarning> Cache::warnings(const Digest& key) {
+    return parse_warnings(read(warnings_key(key)).value_or(""));
+}
+
+// The warnings first: whoever finds the output must find them, too.
+Result<void> Cache::store(const Digest& key, const OutputFiles& output, const std::vector<std::string>& contents,
+                          const std::vector<FileWarning>& warnings) const {
+    if (!warnings.empty()) {
+        if (auto written = write(warnings_key(key), warnings_text(warnings)); !written) return written;
+    }
     for (std::size_t k = 0; k < contents.size(); ++k) {
         if (auto written = write(has_parts(output) ? part_key(key, k) : key, contents[k]); !written) return written;
     }

@@ -25,6 +25,7 @@
 #include <tex/types.h>
 
 #include "cli/console.h"
+#include "cli/json.h"
 #include "tree/recipe.h"
 #include "tree/sha256.h"
 
@@ -47,9 +48,12 @@ public:
     // it is damaged. Errors: those of writing.
     [[nodiscard]] Result<std::vector<std::string>> fetch(const Digest& key, const OutputFiles& output,
                                                          const WriteOptions& write);
-    // Keeps the contents of the files that fetch() returns. Errors: io.
+    // The warnings that making the output `key` called for, as store() was given them.
+    [[nodiscard]] std::vector<FileWarning> warnings(const Digest& key);
+    // Keeps the contents of the files that fetch() returns, and the warnings. Errors: io.
     [[nodiscard]] Result<void> store(const Digest& key, const OutputFiles& output,
-                                     const std::vector<std::string>& contents) const;
+                                     const std::vector<std::string>& contents,
+                                     const std::vector<FileWarning>& warnings) const;
     // Removes the entries that have not been used for the longest time until the others take at most `bytes`.
     void shrink(std::int64_t bytes, Console& console) const;
 

@@ -43,13 +43,19 @@ Result<Judgement> Judge::judge(const BuildTask& task, const Recipe& recipe) {
         stale.named = recipe.outputs()[k].named;
         stale.named.emplace_back("output-version", fmt::format("{}", version_));
         stale.named.emplace_back("input", extension);
-        if (find_why(task, recipe, judgement.inputs, stale)) judgement.stale.push_back(std::move(stale));
+        std::vector<FileWarning> warnings;
+        if (find_why(task, recipe, judgement.inputs, stale, warnings)) {
+            judgement.stale.push_back(std::move(stale));
+        } else {
+            add_new(std::move(warnings), judgement.warnings);
+        }
     }
     return judgement;
 }
 
-// Finds out why an output must be made. Returns false if it is up to date.
-bool Judge::find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale) {
+// Finds out why an output must be made. Returns false if it is up to date, and then what making it called for.
+bool Judge::find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale,
+                     std::vector<FileWarning>& warnings) {
     OutputRecord record;
     NamedValues before;
     {
@@ -88,6 +94,7 @@ bool Judge::find_why(const BuildTask& task, const Recipe& recipe, const Inputs& 
             stale.why = fmt::format("{} was changed by something else", printable(file->first));
         }
     }
+    warnings = std::move(record.warnings);
     return !stale.why.empty();
 }
 
@@ -97,11 +104,13 @@ void Judge::remember(const PlacedFiles& files) {
     }
 }
 
-void Judge::record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files) {
+void Judge::record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files,
+                   std::vector<FileWarning> warnings) {
     remember(files);
     const std::lock_guard lock(mutex_);
     OutputRecord& record = state_.outputs[task.outputs[made.index]];
     const OutputRecord before = std::exchange(record, {task.input, made.settings, inputs.digest, {}, inputs.files});
+    record.warnings = std::move(warnings);
     state_.settings[made.settings] = made.named;
     for (const auto& [name, file] : files) record.files.emplace_back(name, file.digest);
     for (const auto& old : before.files) {
@@ -119,6 +128,7 @@ void Judge::record_part(const BuildTask& task, const std::string& output, const 
     record.input = task.input;
     record.inputs = {};
     record.from = {};
+    record.warnings = {};
     for (const auto& [name, file] : files) {
         const auto known = std::find_if(record.files.begin(), record.files.end(),
                                         [name = name](const auto& other) { return other.first == name; });

@@ -34,6 +34,7 @@ struct Inputs {
 struct Judgement {
     Inputs inputs;
     std::vector<Stale> stale;
+    std::vector<FileWarning> warnings;  // that making the other outputs called for
 };
 
 using PlacedFiles = std::vector<std::pair<std::string, PlacedFile>>;  // names relative to the root
@@ -47,8 +48,9 @@ public:
     // Errors: io, for an input that cannot be read.
     [[nodiscard]] Result<Judgement> judge(const BuildTask& task, const Recipe& recipe);
     // Records an output that is in its place. Files that it had before, such as levels that it has no more, become
-    // outputs that no rule makes.
-    void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files);
+    // outputs that no rule makes. `warnings` are those of making it.
+    void record(const BuildTask& task, const Stale& made, const Inputs& inputs, const PlacedFiles& files,
+                std::vector<FileWarning> warnings);
     // Records files of an output that is not complete: they are ours, and it is not up to date.
     void record_part(const BuildTask& task, const std::string& output, const PlacedFiles& files);
     [[nodiscard]] bool has_changed() const { return changed_; }
@@ -57,7 +59,8 @@ public:
 
 private:
     void remember(const PlacedFiles& files);
-    [[nodiscard]] bool find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale);
+    [[nodiscard]] bool find_why(const BuildTask& task, const Recipe& recipe, const Inputs& inputs, Stale& stale,
+                                std::vector<FileWarning>& warnings);
 
     std::mutex mutex_;  // guards state_.outputs
     BuildState& state_;

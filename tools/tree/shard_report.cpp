@@ -18,10 +18,12 @@ Json output_json(const std::string& name, const OutputRecord& record) {
     Json files = Json::array();
     for (const auto& [file, digest] : record.files)
         files.push_back({{"file", name_json(file)}, {"sha256", digest.hex()}});
-    return {{"output", name_json(name)},
-            {"settings", record.settings.hex()},
-            {"inputs", record.inputs.hex()},
-            {"files", std::move(files)}};
+    Json json = {{"output", name_json(name)},
+                 {"settings", record.settings.hex()},
+                 {"inputs", record.inputs.hex()},
+                 {"files", std::move(files)}};
+    if (!record.warnings.empty()) json["warnings"] = name_json(warnings_text(record.warnings));
+    return json;
 }
 
 bool is_made(const std::string& status) { return status == "made" || status == "cached" || status == "current"; }
@@ -43,6 +45,7 @@ ShardRecord read_record(const JsonLine& line) {
         OutputRecord made{record.input, output.digest("settings"), output.digest("inputs"), {}};
         for (const JsonLine& file : output.objects("files"))
             made.files.emplace_back(file.name("file"), file.digest("sha256"));
+        if (output.has("warnings")) made.warnings = parse_warnings(output.name("warnings"));
         record.outputs.emplace_back(output.name("output"), std::move(made));
     }
     return record;

@@ -95,6 +95,17 @@ public:
         return list;
     }
 
+    std::vector<FileWarning> warnings() {
+        std::vector<FileWarning> list;
+        while (ok_ && has_more()) {
+            FileWarning& warning = list.emplace_back();
+            warning.file = name();
+            warning.message = name();
+            warning.is_counted = next() == "counted";
+        }
+        return list;
+    }
+
 private:
     std::string_view rest_;
     bool ok_ = true;
@@ -121,6 +132,12 @@ bool read_line(std::string_view line, BuildState& state) {
             std::string name = fields.name();
             values.emplace_back(std::move(name), fields.name());
         }
+        return fields.ok();
+    }
+    if (kind == "warned") {
+        const auto made = state.outputs.find(fields.name());
+        std::vector<FileWarning> warnings = fields.warnings();
+        if (made != state.outputs.end()) made->second.warnings = std::move(warnings);
         return fields.ok();
     }
     if (kind != "made") return false;
@@ -167,6 +184,11 @@ std::string BuildState::text(Memos memos_of) const {
         add_digests(text, record.files);
         if (!record.from.empty()) add_digests(text, record.from);
         text += '\n';
+        if (!record.warnings.empty()) {
+            text += "warned\t";
+            add_name(text, output);
+            text += '\t' + warnings_text(record.warnings) + '\n';
+        }
         used.insert(record.settings);
     }
     for (const auto& [digest, values] : settings) {
@@ -198,6 +220,25 @@ BuildState BuildState::parse(std::string_view text) {
         text.remove_prefix(end + 1);
     }
     return state;
+}
+
+std::string warnings_text(const std::vector<FileWarning>& warnings) {
+    std::string text;
+    for (const FileWarning& warning : warnings) {
+        if (!text.empty()) text += '\t';
+        add_name(text, warning.file);
+        text += '\t';
+        add_name(text, warning.message);
+        text += warning.is_counted ? "\tcounted" : "\teach";
+    }
+    return text;
+}
+
+std::vector<FileWarning> parse_warnings(std::string_view text) {
+    Fields fields(text);
+    std::vector<FileWarning> warnings;
+    if (!text.empty()) warnings = fields.warnings();
+    return fields.ok() ? warnings : std::vector<FileWarning>();
 }
 
 Result<Digest> digest_of_file(const std::string& path) {

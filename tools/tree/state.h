@@ -11,12 +11,14 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <tex/types.h>
 
+#include "cli/json.h"
 #include "tree/changes.h"
 #include "tree/sha256.h"
 
@@ -48,8 +50,9 @@ struct OutputRecord {
     std::string input;
     Digest settings;
     Digest inputs;
-    NamedDigests files;      // several if each level has its own
-    NamedDigests from = {};  // what it was made from; `inputs` is their digest
+    NamedDigests files;                      // several if each level has its own
+    NamedDigests from = {};                  // what it was made from; `inputs` is their digest
+    std::vector<FileWarning> warnings = {};  // of making it; said again as long as it stands
 
     friend bool operator==(const OutputRecord&, const OutputRecord&) = default;
 };
@@ -66,6 +69,10 @@ struct BuildState {
     // Returns an empty state if the text is damaged or of another version.
     [[nodiscard]] static BuildState parse(std::string_view text);
 };
+
+// Warnings as fields: tabs and line feeds in them are escaped. parse_warnings() returns none if the text is damaged.
+[[nodiscard]] std::string warnings_text(const std::vector<FileWarning>& warnings);
+[[nodiscard]] std::vector<FileWarning> parse_warnings(std::string_view text);
 
 // The path of a file of the tree: `root` is empty or the folder that names are relative to.
 [[nodiscard]] std::string path_from(const std::string& root, const std::string& name);

@@ -253,16 +253,6 @@ Result<Made> make_together(const Recipe& recipe, const std::string& input, const
     return made;
 }
 
-// Adds warnings that are not there yet: two flows have read the same files.
-void add_new(std::vector<FileWarning>&& more, std::vector<FileWarning>& all) {
-    for (FileWarning& warning : more) {
-        const auto is_same = [&](const FileWarning& other) {
-            return other.file == warning.file && other.message == warning.message;
-        };
-        if (std::none_of(all.begin(), all.end(), is_same)) all.push_back(std::move(warning));
-    }
-}
-
 }  // namespace
 
 Result<Made> make_texture(const Recipe& recipe, const std::string& input, const std::vector<WantedOutput>& wanted,

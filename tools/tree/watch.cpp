@@ -299,7 +299,7 @@ ExitCode Watch::run() {
     }
     if (failure_) console_.error(failure_->message());
     if (!host.interruption().empty()) {  // between two builds
-        if (running_.json) std::ignore = print_json_summary({}, 0, true, console_);
+        if (running_.json) std::ignore = print_json_summary({}, 0, 0, true, console_);
         host.end_interrupted();
     }
     return ExitCode::io;

@@ -32,10 +32,12 @@ std::string in_lower_case(std::string text) {
 }
 
 // Textures are made from something, and have names like its own.
-bool may_need_rule(const std::string& path) {
+bool is_source(const std::string& path) {
     const auto container = container_of(path);
-    return named_as(path) != NamedAs::other &&
-           (is_height_file(path) || (is_picture(path) && !(container && can_hold_blocks(*container))));
+    return is_picture(path) && !(container && can_hold_blocks(*container));
+}
+bool may_need_rule(const std::string& path) {
+    return named_as(path) != NamedAs::other && (is_height_file(path) || is_source(path));
 }
 
 // The folders of outputs, each with "/" at its end.
@@ -117,7 +119,10 @@ void Lister::find_inputs() {
     };
     search.entered = entered_;
     search.passed_over = [&](const std::string& path) {
-        if (may_need_rule(path)) passed_over_.push_back(path);
+        if (may_need_rule(path))
+            passed_over_.push_back(path);
+        else if (is_source(path))
+            work_.other_pictures.push_back(path);
     };
     search.unreadable = [&](const std::string& folder, const std::string& reason) {
         work_.unreadable.push_back(folder + ": " + reason);
@@ -235,6 +240,13 @@ void Lister::find_without_rule() {
         if (!is_answered && !is_known(path)) work_.without_rule.push_back(path);
     }
     std::sort(work_.without_rule.begin(), work_.without_rule.end());
+    std::set<std::string> read;  // beside inputs
+    for (const BuildTask& task : work_.tasks) {
+        for (const std::string& part : recipes_[task.recipe].own_files(task.input, path_from(root_, task.input)))
+            read.insert(slashed(fs::path(part).lexically_normal()));
+    }
+    std::erase_if(work_.other_pictures, [&](const std::string& path) { return read.contains(path) || is_known(path); });
+    std::sort(work_.other_pictures.begin(), work_.other_pictures.end());
 }
 
 void Lister::check_cycle(std::size_t recipe, std::vector<std::size_t>& open) {
