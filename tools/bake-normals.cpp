@@ -151,14 +151,19 @@ BakeFileOptions BakeNormals::options(cli::Job& job) const {
 Result<void> BakeNormals::process(cli::Job& job) {
     BakeFileOptions with = options(job);
     cli::JudgedColours judged;
+    const auto accept_sky = [&] {
+        if (job.task.input == "-") return Result<void>();  // is read once
+        return sky_.accept(job, [&] { return probe(job.task.input, job.read_options); });
+    };
     with.accept = [&](const HeightReport& heights) -> Result<void> {
         judged = reader_.judge(job, heights);
-        return judged.channel ? Error{ErrorCode::bad_data, job.task.input, judged.words} : Result<void>();
+        if (judged.channel) return Error{ErrorCode::bad_data, job.task.input, judged.words};
+        return accept_sky();
     };
     auto baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));
     if (!baked && judged.channel) {
         with.heights.channel = *judged.channel;
-        with.accept = {};
+        with.accept = [&](const HeightReport&) { return accept_sky(); };
         job.say(fmt::format("{}: --channel {}: R, G and B are the bytes of heights, as in map tiles\n",
                             cli::printable(job.task.input), name_of(kHeightChannelNames, *judged.channel)));
         baked = bake_file(job.task.input, job.task.output, job.task.container, with, job.until(1.0));

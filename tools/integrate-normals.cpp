@@ -201,6 +201,8 @@ Result<void> IntegrateNormals::process(cli::Job& job) {
                         "from the others",
                         unknown, levels->front().field.height.extent().texels()));
     }
+    const Extent extent = levels->front().field.height.extent();
+    if (auto accepted = sky_.accept(job, [&] { return extent; }); !accepted) return accepted;
     OcclusionMaps hidden;  // of the heights as they are, which are stretched for their file
     if (sky_.is_given()) {
         auto maps = occlusion(levels->front().field, sky_.options(), kernel_.bake, job.until(0.88));

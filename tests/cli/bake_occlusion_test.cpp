@@ -76,8 +76,9 @@ TEST_F(BakeOcclusion, GoesIntoAChannelOfAnotherTexture) {
     refuses(bake + "orm.png --occlusion-into orm.png", "orm.png");
     refuses(bake + "x.png --occlusion-into orm.png:luma", "is not one of r, g, b, a");
     ASSERT_EQ(shell(scratch_, "convert -size 7x7 xc:white -define png:color-type=2 small.png").code, 0);
-    const Ran small = shell(scratch_, bake + "x.png --occlusion-into small.png");
+    const Ran small = shell(scratch_, "rm n.png; " + bake + "x.png --occlusion-into small.png");
     EXPECT_EQ(small.code, 4);
+    EXPECT_FALSE(scratch_.has("x.png") || scratch_.has("n.png")) << "nothing is written";
     EXPECT_NE(small.err.find("small.png: is 7x7 texels, and the occlusion is "), std::string::npos) << small.err;
     EXPECT_NE(shell(scratch_, bake + "x.png --occlusion-into orm.png:a").err.find("has no channel A"),
               std::string::npos);

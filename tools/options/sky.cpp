@@ -21,23 +21,38 @@ namespace tex::cli {
 
 namespace {
 
-// The picture of `file` with other values, from 0 to 1, in one of its channels. The codes of the other channels stay.
-Result<Texture> copy_with(const ChannelFile& file, const Plane<float>& values, const ReadOptions& read) {
-    const auto whole = read_texture(file.file, read);
+// The place of the channel in the codes of a texel.
+std::size_t place_of(const ChannelFile& file) {
+    return static_cast<std::size_t>(file.channel) - static_cast<std::size_t>(HeightChannel::r);
+}
+
+// The picture of `file`, which has the channel and the extent.
+Result<Texture> picture_for(const ChannelFile& file, Extent wanted, const ReadOptions& read) {
+    auto whole = read_texture(file.file, read);
     if (!whole) return whole.error();
     const FormatInfo& format = format_info(whole->format);
-    const auto place = static_cast<std::size_t>(file.channel) - static_cast<std::size_t>(HeightChannel::r);
-    const auto channels = static_cast<std::size_t>(format.channels);
+    const std::size_t place = place_of(file);
     const auto refused = [&](std::string reason) { return Error{ErrorCode::bad_data, file.file, std::move(reason)}; };
     if (format.has_blocks() || format.sample != SampleKind::unorm || (format.bits != 8 && format.bits != 16))
         return refused("occlusion goes into pictures of 8 or 16 bits alone");
-    if (place >= channels)
+    if (place >= static_cast<std::size_t>(format.channels))
         return refused(fmt::format("has no channel {}, into which --occlusion-into writes", "RGBA"[place]));
     const Extent extent = whole->levels.front().extent;
-    if (extent != values.extent()) {
+    if (extent != wanted) {
         return refused(fmt::format("is {}x{} texels, and the occlusion is {}x{}", extent.width, extent.height,
-                                   values.extent().width, values.extent().height));
+                                   wanted.width, wanted.height));
     }
+    return whole;
+}
+
+// The picture of `file` with other values, from 0 to 1, in one of its channels. The codes of the other channels stay.
+Result<Texture> copy_with(const ChannelFile& file, const Plane<float>& values, const ReadOptions& read) {
+    const Extent extent = values.extent();
+    const auto whole = picture_for(file, extent, read);
+    if (!whole) return whole.error();
+    const FormatInfo& format = format_info(whole->format);
+    const std::size_t place = place_of(file);
+    const auto channels = static_cast<std::size_t>(format.channels);
     Texture copy;
     copy.format = whole->format;
     copy.levels = {whole->levels.front()};
@@ -137,6 +152,14 @@ void SkyOptions::check(const Command& command, bool is_extra) const {
         throw UsageError(
             "--occlusion-distance needs --occlusion-out, --sky-view-out, --bent-out, --horizon-out, or occlusion "
             "beside the normals");
+}
+
+Result<void> SkyOptions::accept(const Job& job, const std::function<Result<Extent>()>& extent_of) const {
+    if (into_.file.empty()) return {};
+    const auto extent = extent_of();
+    if (!extent) return extent.error();
+    const auto picture = picture_for(into_of(job.task), *extent, job.read_options);
+    return picture ? Result<void>() : picture.error();
 }
 
 Result<void> SkyOptions::write(Job& job, OcclusionMaps maps, YAxis y, const MipOptions* mips) const {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <tex/pipeline.h>
@@ -30,6 +31,9 @@ public:
     // Throws UsageError if an option has no effect.
     void check(const Command& command, bool is_extra) const;
 
+    // An error if the file of --occlusion-into does not take the occlusion of heights of this extent: before anything
+    // is written. The extent is asked for only if it is needed.
+    [[nodiscard]] Result<void> accept(const Job& job, const std::function<Result<Extent>()>& extent_of) const;
     // Write what the user wants, and add it to the job's report. `y` is that of the bent normals. With `mips`, files
     // that hold blocks have levels, too, except those of horizons, whose slices would mix.
     [[nodiscard]] Result<void> write(Job& job, OcclusionMaps maps, YAxis y, const MipOptions* mips = nullptr) const;
