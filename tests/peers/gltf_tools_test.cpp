@@ -22,6 +22,7 @@
 #include <gtest/gtest.h>
 #include <tex/tex.h>
 
+#include "npm.h"
 #include "scratch.h"
 
 namespace {
@@ -34,17 +35,8 @@ bool run(const std::string& command) { return std::system((command + " >/dev/nul
 
 // The folder of the tools' programs; empty if they cannot be installed.
 std::string tools() {
-    static const std::string folder = [] {
-        const fs::path place = fs::path(TEX_BINARY_DIR) / "gltf-tools";
-        const std::string programs = (place / "node_modules/.bin/").string();
-        if (fs::exists(programs + "gltfpack") && fs::exists(programs + "gltf-transform")) return programs;
-        if (!run("command -v npm")) return std::string();
-        fs::create_directories(place);
-        const bool installed = run("timeout 300 npm install --no-audit --no-fund --prefix '" + place.string() +
-                                   "' gltfpack@1.3.0 @gltf-transform/cli@4.5.1");
-        return installed ? programs : std::string();
-    }();
-    return folder;
+    static const std::string folder = tex::npm_folder("gltf-tools", "gltfpack@1.3.0 @gltf-transform/cli@4.5.1");
+    return folder.empty() ? folder : folder + "/node_modules/.bin/";
 }
 
 struct Sample {

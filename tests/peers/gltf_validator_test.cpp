@@ -25,6 +25,7 @@
 #include <tex/tex.h>
 #include <nlohmann/json.hpp>
 
+#include "npm.h"
 #include "scratch.h"
 
 namespace {
@@ -39,15 +40,7 @@ bool shell(const std::string& command) { return std::system((command + " </dev/n
 
 // The folder in which npm has installed the validator; empty if it cannot.
 std::string modules() {
-    static const std::string folder = [] {
-        const fs::path place = fs::path(TEX_BINARY_DIR) / "gltf-tools";
-        if (fs::exists(place / "node_modules/gltf-validator")) return place.string();
-        if (!shell("command -v npm >/dev/null")) return std::string();
-        fs::create_directories(place);
-        const bool installed = shell("timeout 300 npm install --no-audit --no-fund --prefix '" + place.string() +
-                                     "' gltf-validator@2.0.0-dev.3.10 >/dev/null 2>&1");
-        return installed ? place.string() : std::string();
-    }();
+    static const std::string folder = tex::npm_folder("gltf-validator", "gltf-validator@2.0.0-dev.3.10");
     return folder;
 }
 
