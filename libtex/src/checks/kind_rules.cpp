@@ -20,6 +20,7 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr double kGreyEverywhere = 0.999;
+constexpr double kGreyMostly = 0.95;  // JPEG adds a little colour to grey
 constexpr double kBehindShare = 0.05;
 constexpr double kColorShare = 0.9;
 constexpr double kExtremeShare = 0.9;
@@ -103,6 +104,11 @@ FoundKind check_no_map(const CheckContext& context, Findings& findings) {
                       std::string(name_of(kHeightChannelNames, *bytes)),
                   unit);
         return {PictureKind::heights, bytes};
+    }
+    if (context.stored.has_z() && measure.grey > kGreyMostly && measure.correlation > kGreyMostly) {
+        add_share(findings, "N210",
+                  "R, G and B differ by at most 6 codes in " + percent(measure.grey) + " of the texels", measure.grey);
+        return {PictureKind::grey};
     }
     add_share(findings, "N214", evidence_text(measure, context.stored.has_z()) + fitting_layout_text(context.stored),
               unit);
