@@ -161,24 +161,29 @@ void print_saga() {
     const Scratch scratch;
     const std::string name = scratch.path("saga");
     std::printf(
-        "\n| size | directions | SAGA: s of the processor | ours | mean difference | p99 "
-        "|\n|---|---|---|---|---|---|\n");
-    for (const int size : {256, 512}) {
+        "\n| size | directions | SAGA: radius | s of the processor | ours | mean difference | p99 "
+        "|\n|---|---|---|---|---|---|---|\n");
+    struct Case {
+        int size, directions, radius;  // of SAGA's; ours has no limit
+    };
+    for (const auto [size, directions, radius] : {Case{256, 32, 100000}, {512, 32, 100000}, {1024, 16, 256}}) {
         const HeightField field = fields::field_of({size, size}, 40.0f, Wrap::clamp, [&](int i, int j) {
-            return static_cast<double>(whole->height.at(200 + i, 300 + j));
+            return static_cast<double>(
+                whole->height.at(std::min(200, 1025 - size) + i, std::min(300, 1025 - size) + j));
         });
         write_grid(name, field);
         rusage before{}, after{};
         getrusage(RUSAGE_CHILDREN, &before);
         const std::string command = "OMP_NUM_THREADS=1 saga_cmd ta_lighting 3 -DEM " + name + ".sgrd -VISIBLE " + name +
-                                    "_v -SVF " + name + "_s -RADIUS 100000 -NDIRS 32 > /dev/null 2>&1";
+                                    "_v -SVF " + name + "_s -RADIUS " + std::to_string(radius) + " -NDIRS " +
+                                    std::to_string(directions) + " > /dev/null 2>&1";
         if (std::system(command.c_str()) != 0) return;
         getrusage(RUSAGE_CHILDREN, &after);
         const auto seconds = [](const rusage& usage) {
             return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
         };
         const double begin = processor_seconds();
-        const auto maps = occlusion(field, {32, 0.0f, true, false, false});
+        const auto maps = occlusion(field, {directions, 0.0f, true, false, false});
         const double own = processor_seconds() - begin;
         std::vector<float> theirs(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
         std::ifstream data(name + "_s.sdat", std::ios::binary);
@@ -195,8 +200,9 @@ void print_saga() {
             }
         }
         std::sort(differences.begin(), differences.end());
-        std::printf("| %d | 32 | %.2f | %.3f | %.4f | %.4f |\n", size, seconds(after) - seconds(before), own,
-                    sum / static_cast<double>(differences.size()), differences[differences.size() * 99 / 100]);
+        std::printf("| %d | %d | %d | %.2f | %.3f | %.4f | %.4f |\n", size, directions, radius,
+                    seconds(after) - seconds(before), own, sum / static_cast<double>(differences.size()),
+                    differences[differences.size() * 99 / 100]);
     }
 }
 
