@@ -35,7 +35,8 @@ TEST_F(BuildNormals, MakesWhatTheCommandsMakeOneAfterTheOther) {
 TEST_F(BuildNormals, JsonHasALineForEachTextureWhenItIsDoneAndASummary) {
     const auto last = [](const Ran& ran) { return nlohmann::json::parse(lines_of(ran.out).back()); };
     EXPECT_EQ(last(build()), nlohmann::json::parse(R"({"schema":1,"made":3,"cached":0,"current":0,"failed":0,
-                                                       "untried":0,"removed":0,"without_rule":0,"interrupted":false})"));
+                                                       "untried":0,"removed":0,"without_rule":0,
+                                                       "interrupted":false})"));
     scratch_.write("art/wall_h.png", "damaged");
     const auto summary = last(build());
     EXPECT_EQ(summary["current"], 2);

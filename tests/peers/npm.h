@@ -2,6 +2,8 @@
 // Packages of npm that tests of peers run.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -23,9 +25,9 @@ inline std::string npm_folder(const std::string& name, const std::string& packag
     };
     if (!succeeds("command -v npm")) return {};
     fs::create_directories(root);
-    std::string own = (root / (name + ".XXXXXX")).string();
-    if (mkdtemp(own.data()) == nullptr) return {};
+    const std::string own = (root / (name + "." + std::to_string(getpid()))).string();
     std::error_code error;
+    fs::remove_all(own, error);  // of a process that was killed
     if (succeeds("timeout 300 npm install --no-audit --no-fund --prefix '" + own + "' " + packages))
         fs::rename(own, place, error);  // fails if another process was first
     fs::remove_all(own, error);
