@@ -76,6 +76,8 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
         std::vector<std::string> read = sources_ = sources();
         read.insert(read.end(), command.argument_files().begin(), command.argument_files().end());
         documents_.check(read);
+        if (pair_.magnifies() && (documents_.has_page() || command.given("--level")))
+            throw cli::UsageError("--magnify compares the largest levels, without --report");
     });
     command.example("compare-normals bricks.exr bricks.dds", "What the compression of bricks.dds cost.");
     command.example("compare-normals old.dds new.dds --level all --max-p999 2 --heatmap diff.png",
@@ -201,11 +203,12 @@ Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const 
                                                    const cli::MeshSpace* mesh) {
     const std::vector<std::string> names = pair.names();
     const auto& [map_a, map_b] = pair.maps;
-    const auto a = pair_.read_levels(map_a, 0, running_.read, console, running_.step(console, 0.0, 0.3, names[0]));
+    auto a = pair_.read_levels(map_a, 0, running_.read, console, running_.step(console, 0.0, 0.3, names[0]));
     if (!a) return a.error();
-    const auto b = pair_.read_levels(map_b, 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
+    auto b = pair_.read_levels(map_b, 1, running_.read, console, running_.step(console, 0.3, 0.6, names[1]));
     if (!b) return b.error();
     pair_.warn_of_doubts(names, console);
+    pair_.magnify(*a, *b);
     const auto [first, end] = pair_.levels(*a, *b, names, console);
     cli::ExitCode code = cli::ExitCode::done, printed = code;
     std::vector<cli::ComparedLevel> levels;

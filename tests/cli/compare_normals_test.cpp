@@ -40,6 +40,30 @@ TEST_F(CompareNormals, OneMapInTwoConventionsIsZeroDegreesApart) {
     EXPECT_GT(nlohmann::json::parse(mistaken.out)["degrees"]["mean"], 5.0);
 }
 
+// ImageMagick enlarges the map, too, with linear interpolation of a picture that repeats.
+TEST_F(CompareNormals, MagnifiesTheSmallerMapAsASamplerDoes) {
+    ASSERT_EQ(shell(scratch_,
+                    "pack-normals up.exr -o small.png --format rgb16 --max-size 32 --no-sync && "
+                    "convert small.png -virtual-pixel tile -filter triangle -distort Resize "
+                    "$(oiiotool --info up.exr | grep -o '[0-9]* x *[0-9]*' | head -1 | tr -d ' ')'!' large.png")
+                  .code,
+              0);
+    const Ran refused = compare({"up.exr", "small.png"});
+    EXPECT_EQ(refused.code, 4);
+    EXPECT_NE(refused.err.find("--magnify"), std::string::npos) << refused.err;
+    const auto mean = [&](const std::vector<std::string>& arguments) {
+        const Ran ran = compare(arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return nlohmann::json::parse(lines_of(ran.out).front())["degrees"]["mean"].get<double>();
+    };
+    const double expected = mean({"up.exr", "large.png", "--json"});
+    EXPECT_GT(expected, 0.1);
+    EXPECT_NEAR(mean({"up.exr", "small.png", "--magnify", "--json"}), expected, 0.03);
+    EXPECT_NEAR(mean({"small.png", "up.exr", "--magnify", "--json"}), expected, 0.03);
+    EXPECT_EQ(mean({"up.exr", "down.exr", "--magnify", "--json"}), 0.0) << "nothing to enlarge";
+    EXPECT_EQ(compare({"up.exr", "small.png", "--magnify", "--level", "1"}).code, 2);
+}
+
 TEST_F(CompareNormals, ShowsProgressWhereItIsAskedFor) {
     const std::vector<std::string> files = {"up.exr", "down.exr", "--level", "all", "--report", "page.html"};
     const auto with = [&](std::vector<std::string> more) {
@@ -207,7 +231,8 @@ TEST_F(CompareNormals, RefusesWhatCannotBeCompared) {
 TEST_F(CompareNormals, AdvisesHowMapsOfDifferentSizesAreCompared) {
     ASSERT_EQ(run(scratch_, "pack-normals", {"up.exr", "-o", "half.exr", "--max-size", "64"}).code, 0);
     const Ran ran = compare({"half.exr", "up.exr"});
-    const std::string advice = "; pack-normals up.exr --max-size 64 -o SMALL makes a map of that extent\n";
+    const std::string advice =
+        "; pack-normals up.exr --max-size 64 -o SMALL makes a map of that extent, and --magnify ";
     EXPECT_NE(ran.err.find(advice), std::string::npos) << ran.err;
     ASSERT_EQ(run(scratch_, "pack-normals", {"up.exr", "--max-size", "64", "-o", "small.exr"}).code, 0);
     EXPECT_EQ(compare({"half.exr", "small.exr"}).code, 0);

@@ -169,6 +169,15 @@ TEST(Verdicts, GreyWithAlphaIsNoLayoutOfNormals) {
               Ids{"N210"});
 }
 
+// As a JPEG of it has: heights to be baked, not colours.
+TEST(Verdicts, GreyWithALittleColourIsGrey) {
+    const Codes codes = picture(64, 3, [](int i, int j) {
+        const int s = shade(i, j);
+        return std::array<int, 4>{std::min(s + i % 3, 255), s, std::max(s - j % 4, 0), 255};
+    });
+    EXPECT_EQ(ids(codes), Ids{"N210"});
+}
+
 TEST(Verdicts, OcclusionInBlueLeavesXAndYToBeJudged) {
     const Codes codes = picture(64, 4, [](int i, int j) {
         auto c = wave(i, j, 0.4);

@@ -9,6 +9,7 @@
 #include <tex/tex.h>
 
 #include "cli/text.h"
+#include "options/magnified.h"
 
 namespace tex::cli {
 
@@ -19,6 +20,8 @@ void PairOptions::add(Command& command) {
         .often(1, "which way green points in B: up or down");
     command.choice(as_, "--as", "F", kGpuFormatNames,
                    "B is UASTC or ETC1S: compare what a loader makes of it for a GPU that reads F");
+    command.flag(magnifies_, "--magnify",
+                 "of maps of unequal extents, enlarge the smaller one as a shader does from near");
     command
         .option("--level", "N", "the level, 0 being the base level, or all that both have",
                 [this](const std::string& text) {
@@ -115,6 +118,13 @@ std::pair<std::size_t, std::size_t> PairOptions::levels(const MipChain& a, const
     return {0, std::min(a.levels.size(), b.levels.size())};
 }
 
+void PairOptions::magnify(MipChain& a, MipChain& b) const {
+    if (!magnifies_ || a.levels.empty() || b.levels.empty()) return;
+    const Extent p = a.levels.front().extent(), q = b.levels.front().extent();
+    if (p.width < q.width || p.height < q.height) a.levels.front() = magnified(a.levels.front(), q);
+    if (q.width < p.width || q.height < p.height) b.levels.front() = magnified(b.levels.front(), p);
+}
+
 void PairOptions::warn(Console& console, const std::string& file, const std::string& sentence) {
     console.warning(fmt::format("{}: {}", file, sentence));
     warnings_.push_back({file, sentence});
@@ -141,8 +151,10 @@ Result<void> PairOptions::check_level(std::size_t level, const MipChain& a, cons
         const std::string map = !larger.model ? shell_word(larger.file)
                                               : fmt::format("{} --material {}", shell_word(larger.model->file),
                                                             shell_word(larger.model->material));
-        advice = fmt::format("; pack-normals {} --max-size {} -o SMALL{} makes a map of that extent", map,
-                             std::max(small.width, small.height), larger.model ? ".png" : "");
+        advice = fmt::format(
+            "; pack-normals {} --max-size {} -o SMALL{} makes a map of that extent, and --magnify compares them as a "
+            "shader shows both from near",
+            map, std::max(small.width, small.height), larger.model ? ".png" : "");
         break;
     }
     return Error{ErrorCode::bad_option, names[1],

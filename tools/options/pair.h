@@ -21,7 +21,7 @@
 
 namespace tex::cli {
 
-// --y-a, --y-b, --as, --level, --max-mean, --max-p99, --max-p999, --max.
+// --y-a, --y-b, --as, --magnify, --level, --max-mean, --max-p99, --max-p999, --max.
 class PairOptions {
 public:
     void add(Command& command);
@@ -41,6 +41,9 @@ public:
     // levels.
     [[nodiscard]] std::pair<std::size_t, std::size_t> levels(const MipChain& a, const MipChain& b,
                                                              const std::vector<std::string>& names, Console& console);
+    // With --magnify: enlarges the first level of the smaller map to the extent of the other's.
+    void magnify(MipChain& a, MipChain& b) const;
+    [[nodiscard]] bool magnifies() const { return magnifies_; }
     // Returns an error if a map lacks `level` or if the two differ in extent there.
     [[nodiscard]] static Result<void> check_level(std::size_t level, const MipChain& a, const MipChain& b,
                                                   const MapPair& pair);
@@ -57,7 +60,7 @@ private:
     std::optional<YAxis> y_[2];
     std::optional<GpuFormat> as_;
     int level_ = 0;
-    bool all_levels_ = false;
+    bool all_levels_ = false, magnifies_ = false;
     std::optional<double> max_mean_, max_p99_, max_p999_, max_;  // degrees
     std::set<std::string> warned_of_;                            // files
     SourceInfo info_[2];
