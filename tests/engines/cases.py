@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """cases.py [--gate] ENGINE: writes cases.json, what the page of an engine is to draw, in the current folder.
 
-The rows of the first table are FILES; PLACES says where each engine shows them. The second table's are in models.py.
+The rows of the first table are FILES; PLACES says where each engine shows them. Those of the others are in models.py.
 cases.py --commands prints the commands that make the files.
 """
 
@@ -65,6 +65,9 @@ CORNERS = {"own geometry, right-handed": "upper right", "image, flipX": "upper r
 TYPES = {"phaser": ("png",), "playcanvas": ("png", "dds", "ktx2"), "model-viewer": ("png", "ktx2"),
          "godot": ("png", "exr", "dds", "ktx2"), "blender": ("png", "exr", "dds")}
 DRAWS_MODELS = ("three", "babylon", "playcanvas", "cesium", "filament", "model-viewer", "godot", "blender")
+# The sphere with UASTC is as that with the PNG.
+AS_PICTURE = "as with the PNG"
+DRAWS_SPHERES = ("three", "babylon", "playcanvas", "cesium", "filament")
 
 
 def file_of(name):
@@ -86,6 +89,11 @@ def cases_of(engine, gate=False):
             cases.append({"table": "models", "name": kind.name, "place": kind.tangents, "map": "",
                           "model": f"models/{kind.file}", "corner": kind.corner, "dent": kind.dent,
                           "halves": kind.halves})
+    if engine in DRAWS_SPHERES and not gate:
+        for name, file in models.SPHERES.items():
+            wanted = "" if name in (models.BARE, models.PICTURE) else AS_PICTURE
+            cases.append({"table": "spheres", "name": name, "place": "", "map": "", "model": f"models/{file}",
+                          "wanted": wanted})
     for k, case in enumerate(cases):
         case["id"] = f"{k:03}"
     return cases

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# engines.sh: engines of the web draw a bump with our files, and kinds of glTF, lit from above and from the left.
+# engines.sh: engines of the web draw a bump with our files, kinds of glTF, and a sphere with UASTC as with its PNG, lit
+# from above and from the left.
 #
 #     tests/engines/engines.sh [--build BUILD] [--gate] [ENGINE...]    default: build/release, all engines
 #
@@ -68,13 +69,15 @@ python3 "$tests/cases.py" --commands | while read -r command; do
     command=${command//\$bake/$bake}
     eval "${command//\$all/$all_levels}"
 done
-python3 "$tests/models.py" map.png models
+bake-normals "$tests/../../samples/bricks.png" -o details.png --bumpiness 8 --no-sync --quiet
+python3 "$tests/models.py" map.png details.png models
 mirrored=models/node-scale-1-1-1-converted-t-map.glb
 mv "$mirrored" mirrored.glb
 convert-normals mirrored.glb -o "$mirrored" --tangents mikktspace --no-sync --quiet
-basis=models/KHR-texture-basisu-t-map.glb
-mv "$basis" plain.glb
-pack-normals plain.glb -o "$basis" --format uastc --no-sync --quiet
+for basis in models/KHR-texture-basisu-t-map.glb models/sphere-uastc.glb; do
+    mv "$basis" plain.glb
+    pack-normals plain.glb -o "$basis" --format uastc --no-sync --quiet
+done
 
 # Draws the cases.json of this folder with an engine.
 draw() {

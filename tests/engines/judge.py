@@ -11,6 +11,10 @@ wants.
 A picture that is right and upright is also compared with that of preview-normals for the same file, in ours: "agrees"
 is the share of pixels, under both lights, that are within 3 codes of it. How bright a light is is each engine's own
 matter, so its picture is first multiplied by one factor, in linear light, that makes the plane around the bump equal.
+
+Spheres are compared with the one that has a PNG, pixel by pixel under both lights: "apart" is the mean and the 99th
+percentile of the differences in codes of 255. Files of UASTC must be "as with the PNG", and what has no normal map must
+not.
 """
 
 import json
@@ -20,12 +24,16 @@ import statistics
 import struct
 import sys
 
+import models
+from cases import AS_PICTURE
+
 CENTRE = (0.266, 0.281)  # of the bump, from the corner that it is in, as a share of the square
 RADIUS = 0.18
 LEAST = 12  # codes of 255 between halves that count as a difference
 CODES = 3
 # What does not encode its colours as sRGB: (engine, words of the place).
 LINEAR = [("babylon", "own geometry"), ("phaser", "image")]
+AS_MEAN, AS_MOST = 2, 12  # codes of 255 between spheres: their mean, and that of all but 1 % of the pixels
 CORNERS = {"upper left": (0, 0), "upper right": (1, 0), "lower left": (0, 1), "lower right": (1, 1)}
 
 
@@ -124,25 +132,46 @@ def judge(case, pictures):
     case.update(seen=seen[0] if len(set(seen)) == 1 else " | ".join(seen), right=right, halves_of=numbers)
 
 
+def pictures_of(case, lights):
+    """The codes under each light; none if the engine has drawn nothing."""
+    files = [pathlib.Path(f"{case['id']}.{light}.grey") for light in lights]
+    return {light: file.read_bytes() for light, file in zip(lights, files)} if all(f.exists() for f in files) else {}
+
+
+def judge_sphere(case, codes, picture, side):
+    def is_inside(k):
+        return math.hypot(k % side + 0.5 - side / 2, k // side + 0.5 - side / 2) < side / 2 - 1
+    apart = sorted(abs(codes[light][k] - picture[light][k]) for light in codes for k in range(side * side)
+                   if is_inside(k))
+    mean, most = statistics.fmean(apart), apart[len(apart) * 99 // 100]
+    is_lit = min(max(light) for light in picture.values()) >= 4 * LEAST
+    same = is_lit and mean <= AS_MEAN and most <= AS_MOST
+    case.update(seen=AS_PICTURE if same else "not as with the PNG", right=same == (case["name"] != models.BARE),
+                apart=[round(mean, 2), most])
+
+
 def main():
     failed = False
     job = json.loads(pathlib.Path("cases.json").read_text(encoding="utf-8"))
+    sphere = next((pictures_of(case, job["lights"]) for case in job["cases"]
+                   if case["table"] == "spheres" and case["name"] == models.PICTURE), {})
     for case in job["cases"]:
         text = pathlib.Path(f"{case['id']}.txt")
         case["said"] = text.read_text(encoding="utf-8") if text.exists() else ""
-        files = {light: pathlib.Path(f"{case['id']}.{light}.grey") for light in job["lights"]}
-        if all(file.exists() for file in files.values()):
-            pictures = {light: file.read_bytes() for light, file in files.items()}
-            rows = {light: [codes[at:at + job["side"]] for at in range(0, len(codes), job["side"])]
-                    for light, codes in pictures.items()}
+        case.update(seen="refused", right=False, halves_of=[], apart=[])
+        codes = pictures_of(case, job["lights"])
+        if codes and case["table"] == "spheres":
+            if sphere:
+                judge_sphere(case, codes, sphere, job["side"])
+        elif codes:
+            rows = {light: [row[at:at + job["side"]] for at in range(0, len(row), job["side"])]
+                    for light, row in codes.items()}
             judge(case, rows)
             if (case["right"] and case["corner"] == "upper left" and not case["dent"] and not case["halves"] and
                     pathlib.Path("ours").exists()):
                 case["agrees"] = agreement(case, job["engine"], rows, job["side"])
-        else:
-            case.update(seen="refused", right=False, halves_of=[])
-        print(f"{case['table']:7}{case['name']:30}{case['place']:52}{'right' if case['right'] else 'WRONG':7}"
-              f"{case['seen']:32}{case['halves_of']} "
+        print(f"{case['table']:8}{case['name']:30}{case['place']:52}{'right' if case['right'] else 'WRONG':7}"
+              f"{case['seen']:32}{case['halves_of'] or case['apart']} "
               f"{case.get('agrees', '')} {case['said'].splitlines()[0][:100] if case['said'] else ''}")
         if case.get("wanted", "") not in ("", case["seen"]):
             print(f"    wanted: {case['wanted']}")

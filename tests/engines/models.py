@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""models.py MAP FOLDER: writes a model for each kind of glTF that engines may draw differently.
+"""models.py MAP DETAILS FOLDER: writes a model for each kind of glTF that engines may draw differently.
 
 Each is a square from -1 to 1 that faces +z, with MAP in it, so that the picture of the map fills the view. KINDS says
-what each has, and what the specification wants to be seen.
+what each has, and what the specification wants to be seen. Beside them, spheres with and without the map DETAILS.
 """
 
 import dataclasses
@@ -13,6 +13,7 @@ import pathlib
 import struct
 import sys
 
+import sphere
 
 
 @dataclasses.dataclass
@@ -68,6 +69,11 @@ def kinds():
         yield Kind(f"TANGENT turned by {turn} degrees", "map", turn=turn)
 
 
+# Spheres, by the file of their normal map. engines.sh has pack-normals replace the picture of the last one.
+BARE, PICTURE = "none", "PNG"
+SPHERES = {BARE: "sphere-bare.glb", PICTURE: "sphere-png.glb", "uastc": "sphere-uastc.glb"}
+
+
 def transformed(uv, transform):
     """KHR_texture_transform: T * R * S."""
     (u, v), (su, sv), angle = uv, transform.get("scale", (1, 1)), transform.get("rotation", 0)
@@ -85,7 +91,8 @@ def tangent(points, uvs):
     return t[0] / length, t[1] / length, 1.0 if area > 0 else -1.0
 
 
-def model_of(kind, image):
+def square(kind):
+    """Positions, normals, UVs, tangents, indices."""
     strips = [(-1, 0), (0, 1)] if kind.halves else [(-1, 1)]
     points = [(x, y) for left, right in strips for x, y in ((left, -1), (right, -1), (right, 1), (left, 1))]
     indices = [4 * k + i for k in range(len(strips)) for i in (0, 1, 2, 0, 2, 3)]
@@ -102,6 +109,18 @@ def model_of(kind, image):
         angle = math.radians(kind.turn)
         tx, ty = math.cos(angle) * tx - math.sin(angle) * ty, math.sin(angle) * tx + math.cos(angle) * ty
         tangents += 4 * [(tx, ty, 0.0, -w if kind.opposite else w)]
+    return [(x, y, 0) for x, y in points], len(points) * [(0, 0, 1)], uvs, tangents, indices
+
+
+def whole_sphere():
+    sides, rings = 96, 48
+    normals, tangents, uvs = zip(*sphere.vertices(sides, rings))
+    return normals, normals, uvs, tangents, list(sphere.triangles(sides, rings))
+
+
+def model_of(kind, geometry, image):
+    """Without an image there is no normal map."""
+    points, normals, uvs, tangents, indices = geometry
     blob, views, accessors = b"", [], []
 
     def add(code, component, shape, rows, **bounds):
@@ -113,29 +132,35 @@ def model_of(kind, image):
         blob += struct.pack(f"<{len(values)}{code}", *values)
         return len(accessors) - 1
 
-    attributes = {"POSITION": add("f", 5126, "VEC3", [(x, y, 0) for x, y in points], min=[-1, -1, 0], max=[1, 1, 0]),
-                  "NORMAL": add("f", 5126, "VEC3", len(points) * [(0, 0, 1)])}
+    low, high = ([bound(axis) for axis in zip(*points)] for bound in (min, max))
+    attributes = {"POSITION": add("f", 5126, "VEC3", points, min=low, max=high),
+                  "NORMAL": add("f", 5126, "VEC3", normals)}
     if kind.uv_set == 1:
         attributes["TEXCOORD_0"] = add("f", 5126, "VEC2", [(1 - u, 1 - v) for u, v in uvs])
     attributes[f"TEXCOORD_{kind.uv_set}"] = add("f", 5126, "VEC2", uvs)
     if kind.tangents:
         attributes["TANGENT"] = add("f", 5126, "VEC4", tangents)
     order = add("I", 5125, "SCALAR", [(i,) for i in indices])
-    views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(image)})
-    blob += image + b"\0" * (-len(image) % 4)
+    if image:
+        views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(image)})
+        blob += image + b"\0" * (-len(image) % 4)
     texture = {"index": 0, "texCoord": kind.uv_set, "scale": kind.scale}
     if kind.transform:
         texture["extensions"] = {"KHR_texture_transform": kind.transform}
-    material = {"normalTexture": texture, "doubleSided": kind.double_sided,
+    material = {"doubleSided": kind.double_sided,
                 "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1,
                                          "baseColorFactor": [0.6, 0.6, 0.6, 1]}}
     document = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, **kind.node}],
         "meshes": [{"primitives": [{"attributes": attributes, "indices": order, "material": 0}]}],
-        "materials": [material], "textures": [{"source": 0, "sampler": 0}],
-        "samplers": [{"magFilter": 9729, "minFilter": 9729, "wrapS": 10497, "wrapT": 10497}],
-        "images": [{"bufferView": len(views) - 1, "mimeType": "image/png"}],
+        "materials": [material],
         "buffers": [{"byteLength": len(blob)}], "bufferViews": views, "accessors": accessors}
+    if image:
+        material["normalTexture"] = texture
+        document.update(
+            textures=[{"source": 0, "sampler": 0}],
+            samplers=[{"magFilter": 9729, "minFilter": 9729, "wrapS": 10497, "wrapT": 10497}],
+            images=[{"bufferView": len(views) - 1, "mimeType": "image/png"}])
     if kind.transform:
         document["extensionsUsed"] = ["KHR_texture_transform"]
     text = json.dumps(document).encode()
@@ -145,10 +170,12 @@ def model_of(kind, image):
 
 
 def main():
-    image, folder = pathlib.Path(sys.argv[1]).read_bytes(), pathlib.Path(sys.argv[2])
+    image, details, folder = *(pathlib.Path(path).read_bytes() for path in sys.argv[1:3]), pathlib.Path(sys.argv[3])
     folder.mkdir(exist_ok=True)
     for kind in kinds():
-        (folder / kind.file).write_bytes(model_of(kind, image))
+        (folder / kind.file).write_bytes(model_of(kind, square(kind), image))
+    for name, file in SPHERES.items():
+        (folder / file).write_bytes(model_of(Kind(name, "map"), whole_sphere(), None if name == BARE else details))
 
 
 if __name__ == "__main__":

@@ -15,23 +15,23 @@ import sys
 SIDES, RINGS = 256, 128
 
 
-def vertices():
-    for ring in range(RINGS + 1):
-        theta = math.pi * ring / RINGS  # from the north pole
-        for side in range(SIDES + 1):
-            phi = 2 * math.pi * side / SIDES
+def vertices(sides=SIDES, rings=RINGS):
+    for ring in range(rings + 1):
+        theta = math.pi * ring / rings  # from the north pole
+        for side in range(sides + 1):
+            phi = 2 * math.pi * side / sides
             normal = (math.sin(theta) * math.sin(phi), math.cos(theta), math.sin(theta) * math.cos(phi))
-            yield normal, (math.cos(phi), 0.0, -math.sin(phi), 1.0), (2 * side / SIDES, ring / RINGS)
+            yield normal, (math.cos(phi), 0.0, -math.sin(phi), 1.0), (2 * side / sides, ring / rings)
 
 
-def triangles():
-    for ring in range(RINGS):
-        for side in range(SIDES):
-            a = ring * (SIDES + 1) + side
-            b = a + SIDES + 1
+def triangles(sides=SIDES, rings=RINGS):
+    for ring in range(rings):
+        for side in range(sides):
+            a = ring * (sides + 1) + side
+            b = a + sides + 1
             if ring > 0:
                 yield from (a, b, a + 1)
-            if ring < RINGS - 1:
+            if ring < rings - 1:
                 yield from (a + 1, b, b + 1)
 
 

@@ -10,6 +10,7 @@ import pathlib
 import sys
 
 import cases
+import judge
 import models
 
 NAMES = {"three": "three.js", "babylon": "Babylon.js", "playcanvas": "PlayCanvas", "phaser": "Phaser",
@@ -43,6 +44,19 @@ def files_table(engine, found):
         if cells:
             rows.append([name, *(cells[place] for place in places)])
     return table(["file", *places], rows)
+
+
+def spheres_table(found):
+    engines = [engine for engine in NAMES if any(case["table"] == "spheres" for case in found[engine])]
+    rows = []
+    for name in models.SPHERES:
+        if name == models.PICTURE:
+            continue
+        ones = [next(case for case in found[engine] if case["table"] == "spheres" and case["name"] == name)
+                for engine in engines]
+        rows.append([name, *(("" if one["right"] else "**wrong** ") + ", ".join(map(str, one["apart"] or ["refused"]))
+                             for one in ones)])
+    return table(["normal map", *(NAMES[engine] for engine in engines)], rows)
 
 
 def models_table(found):
@@ -89,6 +103,10 @@ and a dent from both.
             print(f"### {NAMES[engine]}\n\n" + files_table(engine, found[engine]))
     print('## Models\n\nA square with a map of +Y in PNG. "where" is the corner in which the bump must be seen, if '
           "it is another one.\n\n" + models_table(found))
+    print("## Spheres\n\nA sphere of glTF with details.png, the normals of samples/bricks.png, and the one that "
+          "pack-normals has made of it\n(KHR_texture_basisu): how far each is from the picture of that with the PNG, "
+          "in codes of 255, the mean and\nthe 99th percentile of its pixels under both lights. UASTC must be within "
+          f"{judge.AS_MEAN} and {judge.AS_MOST}, a sphere without a map not.\n\n" + spheres_table(found), end="")
 
 
 if __name__ == "__main__":
