@@ -170,12 +170,14 @@ void expect_same_texture(Extent extent, int32_t encoding, int32_t effort) {
 
 TEST(TexC, EncodesAsTheVerbPacks) {
     for (const Extent extent : kExtents) {
-        for (int32_t encoding = TEX_ENCODING_DXT5NM; encoding <= TEX_ENCODING_FLOAT; ++encoding)
-            expect_same_texture(extent, encoding, TEX_EFFORT_NORMAL);
+        for (const auto& row : tex::kEncodingNames)
+            expect_same_texture(extent, static_cast<int32_t>(row.value), TEX_EFFORT_NORMAL);
     }
-    for (int32_t encoding = TEX_ENCODING_DXT5NM; encoding <= TEX_ENCODING_ASTC_8X8; ++encoding) {
-        expect_same_texture({70, 21}, encoding, TEX_EFFORT_FAST);
-        expect_same_texture({70, 21}, encoding, TEX_EFFORT_BEST);
+    for (const auto& row : tex::kEncodingNames) {
+        const tex::Encoding encoding = row.value;
+        if (!tex::format_info(tex::encoding_info(encoding).format).has_blocks()) continue;
+        expect_same_texture({70, 21}, static_cast<int32_t>(encoding), TEX_EFFORT_FAST);
+        expect_same_texture({70, 21}, static_cast<int32_t>(encoding), TEX_EFFORT_BEST);
     }
 }
 
