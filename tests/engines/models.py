@@ -118,9 +118,9 @@ def whole_sphere():
     return normals, normals, uvs, tangents, list(sphere.triangles(sides, rings))
 
 
-def model_of(kind, geometry, image):
-    """Without an image there is no normal map."""
-    points, normals, uvs, tangents, indices = geometry
+def model_of(kind, image, geometry=None):
+    """Of the square, if it is not of another geometry. Without an image there is no normal map."""
+    points, normals, uvs, tangents, indices = geometry or square(kind)
     blob, views, accessors = b"", [], []
 
     def add(code, component, shape, rows, **bounds):
@@ -173,9 +173,9 @@ def main():
     image, details, folder = *(pathlib.Path(path).read_bytes() for path in sys.argv[1:3]), pathlib.Path(sys.argv[3])
     folder.mkdir(exist_ok=True)
     for kind in kinds():
-        (folder / kind.file).write_bytes(model_of(kind, square(kind), image))
+        (folder / kind.file).write_bytes(model_of(kind, image))
     for name, file in SPHERES.items():
-        (folder / file).write_bytes(model_of(Kind(name, "map"), whole_sphere(), None if name == BARE else details))
+        (folder / file).write_bytes(model_of(Kind(name, "map"), None if name == BARE else details, whole_sphere()))
 
 
 if __name__ == "__main__":
