@@ -76,7 +76,8 @@ void decode_row_of_basis(Format format, const std::byte* blocks, int width, cons
         const auto samples = static_cast<int>((count + kBlockEdge - 1) / kBlockEdge * kBlockEdge);
         for (int c = 0; c < info.channels; ++c) {
             for (int j = 0; wanted[c] != nullptr && j < kBlockEdge; ++j)
-                decode_samples(info.sample, info.bits, collected[c][j], 1, samples, rows.channel[c] + j * stride + first);
+                decode_samples(info.sample, info.bits, collected[c][j], 1, samples,
+                               rows.channel[c] + j * stride + first);
         }
     }
 }
