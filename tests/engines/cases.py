@@ -48,7 +48,7 @@ PLACES = {
     "playcanvas": [("own geometry", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
     "phaser": [("image", OWN), ("image, flipX", OWN), ("image, flipY", OWN), ("image, rotated by 90 degrees", OWN)],
     "cesium": [], "filament": [], "model-viewer": [("createTexture", PLAIN), ("createTexture, TANGENT", TANGENT)],
-    "godot": [("own geometry", OWN), ("own geometry, Image", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
+    "godot": [("own geometry", OWN), ("own geometry, Image, Lambert", OWN), ("glTF", PLAIN), ("glTF, TANGENT", TANGENT)],
     "blender": [("own geometry", OWN), ("own geometry, Convention DirectX", OWN), ("glTF", PLAIN),
                 ("glTF, TANGENT", TANGENT)],
 }

@@ -61,8 +61,7 @@ done
     { echo "$0: npm cannot install ${missing[*]}"; exit 77; }
 
 scratch=$(mktemp -d)
-browser=
-trap '[ -z "$browser" ] || kill "$browser" 2>/dev/null || true; wait; rm -rf "$scratch"' EXIT
+trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 bake="--bumpiness $(python3 "$tests/bump.py") --wrap clamp --no-sync --quiet" all_levels="--mips all"
 python3 "$tests/cases.py" --commands | while read -r command; do
@@ -70,6 +69,15 @@ python3 "$tests/cases.py" --commands | while read -r command; do
     eval "${command//\$all/$all_levels}"
 done
 bake-normals "$tests/../../samples/bricks.png" -o details.png --bumpiness 8 --no-sync --quiet
+if [ -z "$gate" ]; then # our pictures of the same files, under the lights of cases.py
+    mkdir ours
+    for file in map*.* *.dds *.ktx2; do
+        for light in above:0,0.6,0.8 left:-0.6,0,0.8; do
+            preview-normals "$file" -o "ours/$file.${light%:*}.bmp" --camera 0,0,0 --size 128 --light "${light#*:}" \
+                --tint 0.6 --specular 0 --ambient 0 --no-legend --no-sync --quiet
+        done
+    done
+fi
 python3 "$tests/models.py" map.png details.png models
 mirrored=models/node-scale-1-1-1-converted-t-map.glb
 mv "$mirrored" mirrored.glb
@@ -81,34 +89,9 @@ done
 
 # Draws the cases.json of this folder with an engine.
 draw() {
-    local engine=$1 port status=0
-    case $engine in godot | blender) "$tests/sid.sh" "$place/sid" "$engine"; return ;; esac
-    echo '<!DOCTYPE html><meta charset="utf-8"><body><script src="start.js"></script>' \
-        '<script type="module" src="page.js"></script>' >page.html
-    cp "$tests/$engine.js" "$tests/page.js" "$tests/babylon-ktx2.js" "$place"
-    cp "$tests/start.js" .
-    "$place/node_modules/.bin/esbuild" "$place/$engine.js" --bundle --format=esm --outfile=page.js --log-level=error \
-        --external:fs --external:path
-    case $engine in
-        three | babylon | playcanvas | model-viewer) ln -sf "$place/node_modules/three/examples/jsm/libs/basis" basis ;;
-        cesium) ln -sf "$place/node_modules/cesium/Build/Cesium" cesium ;;
-        filament) ln -sf "$place/node_modules/filament" filament ;;
-    esac
-    port=$(python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
-    (
-        until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.1; done
-        exec chromium --headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader \
-            --enable-unsafe-swiftshader --no-first-run --disable-background-networking --disable-component-update \
-            --disable-sync --disable-dev-shm-usage --force-color-profile=srgb --user-data-dir="$PWD/profile" \
-            "http://127.0.0.1:$port/page.html" 2>log
-    ) &
-    browser=$!
-    timeout "${ENGINES_PATIENCE:-900}" python3 "$tests/../browser/serve.py" "$port" || status=1
-    kill "$browser" 2>/dev/null || true
-    wait "$browser" 2>/dev/null || true
-    browser=
-    [ "$status" -eq 0 ] || tail -n 3 log
-    return "$status"
+    case $1 in godot | blender) "$tests/sid.sh" "$place/sid" "$1"; return ;; esac
+    cp "$tests/$1.js" "$tests/page.js" "$tests/babylon-ktx2.js" "$place"
+    "$tests/page.sh" "$place" "$1"
 }
 
 # Keeps the verdicts of an engine, what drew them, and when.
@@ -116,6 +99,7 @@ keep() {
     local name=${packages[$1]%% *} now
     mkdir -p "$place/results/$1"
     cp verdicts.json "$place/results/$1"
+    [ ! -e baked.txt ] || cp baked.txt "$place/results/$1"
     if [ -n "$name" ]; then
         now=$(timeout 60 npm view "${name%@*}" version || echo unknown)
         echo "${packages[$1]}"
@@ -131,6 +115,7 @@ failed=0
 for engine in "$@"; do
     mkdir "$engine"
     ln -s "$PWD"/*.png "$PWD"/*.dds "$PWD"/*.ktx2 "$PWD"/*.exr "$PWD"/models "$engine"
+    [ -n "$gate" ] || ln -s "$PWD/ours" "$engine"
     cd "$engine"
     python3 "$tests/cases.py" ${gate:+--gate} "$engine"
     echo "== ${packages[$engine]:-$engine}"

@@ -28,6 +28,9 @@ func surface(case):
 		material.roughness = 1
 		material.normal_enabled = true
 		material.normal_texture = map
+		if case.place.contains("Lambert"):
+			material.diffuse_mode = BaseMaterial3D.DIFFUSE_LAMBERT
+			material.specular_mode = BaseMaterial3D.SPECULAR_DISABLED
 		var plane := MeshInstance3D.new()
 		plane.mesh = QuadMesh.new()
 		plane.mesh.size = Vector2(2, 2)

@@ -32,7 +32,7 @@ RADIUS = 0.18
 LEAST = 12  # codes of 255 between halves that count as a difference
 CODES = 3
 # What does not encode its colours as sRGB: (engine, words of the place).
-LINEAR = [("babylon", "own geometry"), ("phaser", "image")]
+LINEAR = [("babylon", "own geometry"), ("phaser", "image"), ("filament", "")]
 AS_MEAN, AS_MOST = 2, 12  # codes of 255 between spheres: their mean, and that of all but 1 % of the pixels
 CORNERS = {"upper left": (0, 0), "upper right": (1, 0), "lower left": (0, 1), "lower right": (1, 1)}
 

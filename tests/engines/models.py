@@ -31,6 +31,7 @@ class Kind:
     halves: bool = False  # the UVs of the right half are mirrored
     turn: float = 0  # of the tangents, in degrees
     opposite: bool = False  # w of the tangents
+    matte: bool = False  # without highlights
 
     @property
     def file(self):
@@ -45,6 +46,7 @@ def kinds():
         yield Kind(name, "map", **more)
 
     yield from both("plain")
+    yield Kind("no highlights", "", matte=True)  # KHR_materials_specular: for the comparison of pixels
     yield Kind("w opposite", "map", opposite=True)
     yield from both("normalTexture.scale -1", scale=-1, dent=True)
     yield from both("transform (1,-1)", transform={"scale": [1, -1], "offset": [0, 1]}, corner="lower left")
@@ -150,6 +152,8 @@ def model_of(kind, image, geometry=None):
     material = {"doubleSided": kind.double_sided,
                 "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1,
                                          "baseColorFactor": [0.6, 0.6, 0.6, 1]}}
+    if kind.matte:
+        material["extensions"] = {"KHR_materials_specular": {"specularFactor": 0}}
     document = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, **kind.node}],
         "meshes": [{"primitives": [{"attributes": attributes, "indices": order, "material": 0}]}],
@@ -161,8 +165,9 @@ def model_of(kind, image, geometry=None):
             textures=[{"source": 0, "sampler": 0}],
             samplers=[{"magFilter": 9729, "minFilter": 9729, "wrapS": 10497, "wrapT": 10497}],
             images=[{"bufferView": len(views) - 1, "mimeType": "image/png"}])
-    if kind.transform:
-        document["extensionsUsed"] = ["KHR_texture_transform"]
+    used = kind.transform and ["KHR_texture_transform"] or kind.matte and ["KHR_materials_specular"]
+    if used:
+        document["extensionsUsed"] = used
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob

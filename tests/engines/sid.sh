@@ -56,7 +56,8 @@ case $engine in
         sed -i -e 's|^compress/mode=0|compress/mode=2|; s|^compress/normal_map=0|compress/normal_map=1|' \
             -e 's|^mipmaps/generate=false|mipmaps/generate=true|' $(find . -name '*.png.import' -not -path './models/*')
         inside 'godot --headless --import'
-        inside "${DRAW:-$godot --resolution 64x64 --script godot.gd}"
+        inside 'godot --headless --script godot_bake.gd'
+        inside "timeout 600 ${DRAW:-$godot --resolution 64x64 --script godot.gd}"
         ;;
     blender)
         cp "$tests"/*.py .

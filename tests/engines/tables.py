@@ -33,7 +33,8 @@ def cell(case):
         return f"refused: {said[:60]}" if said else "refused"
     numbers = "; ".join(" ".join(map(str, four)) for four in case["halves_of"])
     seen = case["seen"].replace("|", "and")
-    return (f"right ({numbers})" if case["right"] else f"**{seen}** ({numbers})")
+    agrees = f", {case['agrees']:g} %" if "agrees" in case else ""
+    return (f"right{agrees} ({numbers})" if case["right"] else f"**{seen}** ({numbers})")
 
 
 def files_table(engine, found):
@@ -74,6 +75,25 @@ def models_table(found):
     return table(["kind of glTF", "TANGENT", "where", *(NAMES[engine] for engine in engines)], rows)
 
 
+# Why pictures that are right are not those of preview-normals.
+REASONS = {
+    "cesium": "its diffuse term is not Lambert's: it darkens and brightens with the angles (Burley)",
+    "model-viewer": "it has no lamps: the light is a disc in an environment picture, blurred for a rough surface",
+}
+
+
+def pixels_table(found):
+    """The best of each engine's pictures of the PNG with green up, beside that of preview-normals."""
+    rows = []
+    for engine, name in NAMES.items():
+        ours = [case for case in found[engine] if "agrees" in case and
+                (case["name"] in ("PNG, +Y", "plain", "no highlights"))]
+        best = max(ours, key=lambda case: case["agrees"])
+        where = best["place"] if best["table"] == "files" else f"glTF, {best['name']}"
+        rows.append([name, where, f"{best['agrees']:g} %", "" if best["agrees"] >= 99 else REASONS.get(engine, "?")])
+    return table(["engine", "surface", "pixels within 3 codes", "why not"], rows)
+
+
 def main():
     folder, chromium = pathlib.Path(sys.argv[1]), sys.argv[2]
     missing = [engine for engine in NAMES if not (folder / engine / "day").exists()]
@@ -101,6 +121,12 @@ and a dent from both.
     for engine in NAMES:
         if cases.PLACES[engine]:
             print(f"### {NAMES[engine]}\n\n" + files_table(engine, found[engine]))
+    print("## The same pixels\n\nThe share of pixels, under both lights, that are within 3 codes of 255 of the picture "
+          "that preview-normals\nmakes of the same file, as the tables above have it beside \"right\"; here the best of "
+          "PNG, +Y. Each picture is first\nmultiplied by one factor, in linear light, that makes the plane around the "
+          "bump equal. A square whose bump is not in\nthe upper left corner is not compared.\n\n" + pixels_table(found))
+    print("## What Godot bakes\n\nImage.bump_map_to_normal_map() with a scale of 1:\n\n" + said("godot", "baked.txt") +
+          "\n")
     print('## Models\n\nA square with a map of +Y in PNG. "where" is the corner in which the bump must be seen, if '
           "it is another one.\n\n" + models_table(found))
     print("## Spheres\n\nA sphere of glTF with details.png, the normals of samples/bricks.png, and the one that "
