@@ -10,7 +10,8 @@ wants.
 
 A picture that is right and upright is also compared with that of preview-normals for the same file, in ours: "agrees"
 is the share of pixels, under both lights, that are within 3 codes of it. How bright a light is is each engine's own
-matter, so its picture is first multiplied by one factor, in linear light, that makes the plane around the bump equal.
+matter, so its picture is first multiplied by one factor, in linear light, that makes the plane around the bump equal;
+a tone mapping that cannot be turned off is undone before.
 
 Spheres are compared with the one that has a PNG, pixel by pixel under both lights: "apart" is the mean and the 99th
 percentile of the differences in codes of 255. Files of UASTC must be "as with the PNG", and what has no normal map must
@@ -90,6 +91,11 @@ def linear(code):
     return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
 
 
+def without_tones(light):
+    """Before the tone mapping that Cesium always applies, Khronos PBR Neutral, below its shoulder."""
+    return light + 0.04 if light >= 0.04 else math.sqrt(light / 6.25)
+
+
 def encoded(light):
     light = min(max(light, 0), 1)
     return 255 * (12.92 * light if light <= 0.0031308 else 1.055 * light ** (1 / 2.4) - 0.055)
@@ -108,6 +114,8 @@ def agreement(case, engine, pictures, side):
     """The share of pixels, in percent, that are within CODES of our picture of the same file."""
     is_linear = any(engine == name and words in case["place"] and "PBR" not in case["place"] for name, words in LINEAR)
     light_of = [code / 255 if is_linear else linear(code) for code in range(256)]
+    if engine == "cesium":
+        light_of = [without_tones(light) for light in light_of]
     close = count = 0
     for light, picture in pictures.items():
         theirs = [light_of[code] for row in picture for code in row]

@@ -77,7 +77,6 @@ def models_table(found):
 
 # Why pictures that are right are not those of preview-normals.
 REASONS = {
-    "cesium": "its diffuse term is not Lambert's: it darkens and brightens with the angles (Burley)",
     "model-viewer": "it has no lamps: the light is a disc in an environment picture, blurred for a rough surface",
 }
 
@@ -124,7 +123,8 @@ and a dent from both.
     print("## The same pixels\n\nThe share of pixels, under both lights, that are within 3 codes of 255 of the picture "
           "that preview-normals\nmakes of the same file, as the tables above have it beside \"right\"; here the best of "
           "PNG, +Y. Each picture is first\nmultiplied by one factor, in linear light, that makes the plane around the "
-          "bump equal. A square whose bump is not in\nthe upper left corner is not compared.\n\n" + pixels_table(found))
+          "bump equal, and Cesium's tone\nmapping is undone. A square whose bump is not in the upper left corner is not "
+          "compared.\n\n" + pixels_table(found))
     print("## What Godot bakes\n\nImage.bump_map_to_normal_map() with a scale of 1:\n\n" + said("godot", "baked.txt") +
           "\n")
     print('## Models\n\nA square with a map of +Y in PNG. "where" is the corner in which the bump must be seen, if '
