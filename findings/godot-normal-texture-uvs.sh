@@ -55,16 +55,13 @@ func _initialize():
 		var document := GLTFDocument.new()
 		var state := GLTFState.new()
 		document.append_from_file(name + ".gltf", state)
-		var root = document.generate_scene(state)
-		var mesh = root.find_children("*", "MeshInstance3D", true, false)[0].mesh
-		var material = mesh.surface_get_material(0)
+		var material = state.get_materials()[0]
 		print("seen ", name, ": uv1_scale ", material.uv1_scale, ", uv2_scale ", material.uv2_scale)
-		root.free()
 	quit()
 GD
 version=$(godot --version | tail -n 1)
 echo "godot $version"
-seen=$(HOME=$work godot --headless --script look.gd 2>log | sed -n 's/^seen //p')
+seen=$(HOME=$work timeout 60 godot --headless --script look.gd 2>log | sed -n 's/^seen //p')
 echo "$seen"
 grep -i -E 'texcoord|transform' log || echo "no warning"
 [ "${version#4.6.3}" != "$version" ] && ! grep -q -i -E 'texcoord|transform' log &&

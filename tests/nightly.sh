@@ -183,6 +183,7 @@ engines() {
     script blender_bake tests/blender_bake.sh || status=1
     script spheres tests/engines/spheres.sh || status=1
     script engines tests/engines/engines.sh || status=1
+    script recipes tests/engines/recipes.sh || status=1
     script three tests/browser/three.sh || status=1
     script models tests/browser/models.sh build/release ../shared/data samples ${MODELS:+"$MODELS"} || status=1
     script ktx tests/ktx.sh || status=1
