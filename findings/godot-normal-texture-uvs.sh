@@ -33,7 +33,8 @@ views, at = [], 0
 for array in arrays:
     views.append({"buffer": 0, "byteOffset": at, "byteLength": 4 * len(array)})
     at += 4 * len(array)
-accessors = [{"bufferView": k, "componentType": 5126, "count": 3, "type": "VEC3" if k < 2 else "VEC2"} for k in range(4)]
+accessors = [{"bufferView": k, "componentType": 5126, "count": 3, "type": "VEC3" if k < 2 else "VEC2"}
+             for k in range(4)]
 accessors[0].update(min=[0, 0, 0], max=[1, 1, 0])
 texture = {"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}
 for name, material in (("normal", {"normalTexture": texture}),
@@ -51,13 +52,13 @@ PY
 cat >look.gd <<'GD'
 extends SceneTree
 func _initialize():
-	for name in ["normal", "colour"]:
-		var document := GLTFDocument.new()
-		var state := GLTFState.new()
-		document.append_from_file(name + ".gltf", state)
-		var material = state.get_materials()[0]
-		print("seen ", name, ": uv1_scale ", material.uv1_scale, ", uv2_scale ", material.uv2_scale)
-	quit()
+    for name in ["normal", "colour"]:
+        var document := GLTFDocument.new()
+        var state := GLTFState.new()
+        document.append_from_file(name + ".gltf", state)
+        var material = state.get_materials()[0]
+        print("seen ", name, ": uv1_scale ", material.uv1_scale, ", uv2_scale ", material.uv2_scale)
+    quit()
 GD
 version=$(godot --version | tail -n 1)
 echo "godot $version"

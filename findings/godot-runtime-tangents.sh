@@ -32,7 +32,8 @@ views, at = [], 0
 for array in arrays:
     views.append({"buffer": 0, "byteOffset": at, "byteLength": 4 * len(array)})
     at += 4 * len(array)
-accessors = [{"bufferView": k, "componentType": 5126, "count": 3, "type": "VEC3" if k < 2 else "VEC2"} for k in range(3)]
+accessors = [{"bufferView": k, "componentType": 5126, "count": 3, "type": "VEC3" if k < 2 else "VEC2"}
+             for k in range(3)]
 accessors[0].update(min=[0, 0, 0], max=[1, 1, 0])
 with open("plain.gltf", "w", encoding="utf-8") as file:
     json.dump({
@@ -45,13 +46,13 @@ PY
 cat >look.gd <<'GD'
 extends SceneTree
 func _initialize():
-	for flags in [0, 8]:
-		var document := GLTFDocument.new()
-		var state := GLTFState.new()
-		document.append_from_file("plain.gltf", state, flags)
-		var arrays = state.get_meshes()[0].mesh.get_surface_arrays(0)
-		print("seen flags ", flags, ": tangents ", arrays[Mesh.ARRAY_TANGENT])
-	quit()
+    for flags in [0, 8]:
+        var document := GLTFDocument.new()
+        var state := GLTFState.new()
+        document.append_from_file("plain.gltf", state, flags)
+        var arrays = state.get_meshes()[0].mesh.get_surface_arrays(0)
+        print("seen flags ", flags, ": tangents ", arrays[Mesh.ARRAY_TANGENT])
+    quit()
 GD
 version=$(godot --version | tail -n 1)
 echo "godot $version"

@@ -14,7 +14,8 @@ sys.path.insert(0, str(ENGINES))
 import models  # noqa: E402
 
 NAMES = {"three.js": "three", "Babylon.js": "babylon", "PlayCanvas": "playcanvas", "Cesium": "cesium",
-         "filament": "filament"}
+         "filament": "filament", "model-viewer": "model-viewer", "Godot": "godot", "Blender": "blender"}
+PRESETS = {"model-viewer": "three"}  # which draws it
 CHECK = os.path.join(os.environ["TEX_BINARY_DIR"], "check-normals")
 
 
@@ -62,15 +63,23 @@ def found(folder, engine):
 @pytest.mark.parametrize("engine", NAMES.values())
 def test_what_an_engine_draws_wrongly_is_found(made, engine):
     folder, kinds = made
-    ids = found(folder, engine)
+    ids = found(folder, PRESETS.get(engine, engine))
     table = drawn()
+    # Of Godot's, transforms and backs without TANGENT are in the manual alone. Blender reads no TANGENT, so that errors
+    # about it are for other engines; and it refuses KHR_texture_basisu.
+    asked = {"playcanvas": {"N705", "N706", "N805", "N808"}, "godot": {"N705", "N706", "N805", "N808"},
+             "blender": {"N808"}}.get(engine, {"N705", "N706", "N808"})
     words = {"": "none", "map": "for these UVs"}
     rows = 0
     for kind in kinds:
         if kind.turn not in (0, 180):  # N705 has its own limits
             continue
+        if engine == "godot" and (kind.transform or (kind.double_sided and not kind.tangents)):
+            continue
+        if engine == "blender" and kind.name == "KHR_texture_basisu":
+            continue
         is_right = table[kind.name, words.get(kind.tangents, "for " + kind.tangents)][engine]
-        told = ids[kind.file] & ({"N705", "N706", "N808"} | ({"N805"} if engine == "playcanvas" else set()))
+        told = ids[kind.file] & asked
         assert bool(told) != is_right, (kind.name, kind.tangents, ids[kind.file])
         rows += 1
     assert rows > 20
@@ -78,7 +87,7 @@ def test_what_an_engine_draws_wrongly_is_found(made, engine):
 
 def test_gltf_asks_for_all_of_them(made):
     folder, kinds = made
-    alone = set().union(*({file for file, ids in found(folder, engine).items() if "N808" in ids}
+    alone = set().union(*({file for file, ids in found(folder, PRESETS.get(engine, engine)).items() if "N808" in ids}
                           for engine in NAMES.values()))
     assert {file for file, ids in found(folder, "gltf").items() if "N808" in ids} == alone
     assert len(alone) >= 6

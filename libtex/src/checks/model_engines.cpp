@@ -67,7 +67,8 @@ ModelFacts facts_of(const CheckContext& context) {
 constexpr double kSomeShare = 0.001, kSomeTurn = 1.0;  // degrees
 
 // A row of the table of what is drawn, which tests/engines makes (RESULTS.md): three.js 0.187.0, Babylon.js 9.35.0,
-// PlayCanvas 2.23.3, Cesium 1.145.0 and filament 1.53.4 on 29 November 2026. Babylon.js draws all rightly.
+// PlayCanvas 2.23.3, Cesium 1.145.0, filament 1.53.4, Godot 4.6.3 and Blender 5.2.2 on 30 November 2026. Babylon.js
+// draws all rightly. Godot's transform is that of the base colour, which is not known here.
 struct ModelKind {
     std::string_view engines;  // which draw it wrongly
     bool (*is)(const ModelFacts& facts);
@@ -99,6 +100,20 @@ const ModelKind kKinds[] = {
      [](const ModelFacts& f) {
          return "the node " + f.mirroring_node + " mirrors the mesh, so y points the other way";
      }},
+    {"godot", [](const ModelFacts& f) { return f.uv_set != 0; },
+     [](const ModelFacts& f) {
+         return "texCoord is " + std::to_string(f.uv_set) + ": the map is read with UVs of set 0";
+     }},
+    {"blender", [](const ModelFacts& f) { return f.flips; },
+     [](const ModelFacts&) {
+         return std::string(
+             "tangents are made from UVs without KHR_texture_transform, which mirrors them, so y points the other way");
+     }},
+    {"blender", [](const ModelFacts& f) { return f.turn > kSomeTurn; },
+     [](const ModelFacts& f) {
+         return "tangents are made from UVs without KHR_texture_transform, so vectors are turned by " +
+                decimal(f.turn, 0) + " degrees";
+     }},
     {"three three-packed playcanvas filament",
      [](const ModelFacts& f) { return f.has_tangents && !f.mirroring_node.empty(); },
      [](const ModelFacts& f) {
@@ -118,7 +133,7 @@ bool names(std::string_view words, std::string_view word) {
 // "three, playcanvas and filament", without those that draw as another one does.
 std::string list_of(std::string_view words) {
     std::vector<std::string_view> engines;
-    for (const std::string_view engine : {"three", "babylon", "playcanvas", "cesium", "filament"}) {
+    for (const std::string_view engine : {"three", "babylon", "playcanvas", "cesium", "filament", "godot", "blender"}) {
         if (names(words, engine)) engines.push_back(engine);
     }
     std::string text;
