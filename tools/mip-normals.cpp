@@ -54,10 +54,16 @@ MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
 
 cli::OutputRules MipNormals::rules() const {
     if (cli::writes_models(files)) {
+        std::string packing = "pack-normals";
+        for (const std::string& input : command.inputs()) packing += ' ' + cli::shell_word(input);
+        if (!files.output.empty()) packing += " -o " + cli::shell_word(files.output);
+        if (!files.out_dir.empty()) packing += " --out-dir " + cli::shell_word(files.out_dir);
+        if (!files.name.empty()) packing += " --name " + cli::shell_word(files.name);
         throw cli::UsageError(
-            fmt::format("{}: models hold no levels, because engines build them; pack-normals writes models, and its "
-                        "--max-size makes their maps smaller",
-                        cli::printable(files.output.empty() ? files.name : files.output)));
+            cli::printable(files.output.empty() ? files.name : files.output),
+            "mip-normals writes no models. Engines build the levels of PNG and WebP in models; KTX2 holds them, "
+            "renormalised: " +
+                packing + " --format uastc");
     }
     cli::OutputRules rules;
     rules.batch = Container::dds;

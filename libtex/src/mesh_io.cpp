@@ -3,13 +3,16 @@
 #include <tex/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "files/beside.h"
+#include "files/input_file.h"
 #include "formats/reader/reader_mesh.h"
 #include "mesh/gltf.h"
 #include "mesh/obj.h"
@@ -46,6 +49,29 @@ Result<Mesh> parse(const std::string& path, const std::vector<std::byte>& bytes,
     return mesh;
 }
 
+// What names the other files of a mesh: nothing unless it is glTF. Of a GLB file that is as long as it says, the JSON
+// alone, because the rest may be large.
+Result<std::vector<std::byte>> read_names(const std::string& path, std::int64_t most) {
+    auto file = InputFile::open(path);
+    if (!file) return file.error();
+    if (file->size() && *file->size() > most)
+        return Error{ErrorCode::unsupported, path, "has more than " + std::to_string(most) + " bytes"};
+    const std::string_view head(reinterpret_cast<const char*>(file->head().data()), file->head().size());
+    const bool is_blank = head.find_first_not_of(" \t\r\n") == std::string_view::npos;
+    if (!is_blank && !is_gltf(file->head())) return std::vector<std::byte>();
+    const auto length = glb_json_length(file->head(), file->size().value_or(0));
+    if (!length) {
+        auto all = file->read_rest(most);
+        if (all && !is_gltf(*all)) all->clear();
+        return all;
+    }
+    std::vector<std::byte> json(*length);
+    const auto read = file->read_at(kGlbHeader, json.data(), json.size());
+    if (!read) return read.error();
+    json.resize(*read);
+    return json;
+}
+
 }  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
@@ -68,9 +94,9 @@ Result<std::vector<std::string>> mesh_files(const std::string& path, const MeshR
         std::error_code error;
         if (path == "-" || (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)))
             return files;
-        const auto bytes = read_at_most(path, options.max_bytes);
+        const auto bytes = read_names(path, options.max_bytes);
         if (!bytes) return bytes.error();
-        if (!is_gltf(*bytes)) return files;
+        if (bytes->empty()) return files;
         const auto names = gltf_buffer_files(*bytes);
         if (!names) return names.error().of(path);
         for (const std::string& name : *names) {

@@ -116,6 +116,28 @@ TEST_F(ModelForms, OneFileBecomesTextAndComesBack) {
     EXPECT_EQ(contents("again/m.glb"), contents("in/m.gltf"));
 }
 
+// What has no place of bytes in it stays as somebody wrote it: white space, numbers, escapes, the order of the keys.
+TEST_F(ModelForms, TheTextThatStaysIsTheSame) {
+    const std::string odd = R"("EXT_nobody" : {"b":1.50e+00 ,
+	"a":"\u0041\/", "a":-0 , "big":123456789012345678901234567890},)";
+    std::string text = read("in/m.gltf");
+    text.insert(text.find('{') + 1, odd);
+    write("in/odd.gltf", text);
+    writes("in/odd.gltf", "glb/odd.glb");
+    writes("glb/odd.glb", "back/odd.gltf");
+    const json model = json::parse(text.substr(3));
+    for (const char* name : {"glb/odd.glb", "back/odd.gltf"}) {
+        const std::string made = read(name);
+        EXPECT_NE(made.find("{" + odd), std::string::npos) << name;
+        for (const char* key : {"accessors", "materials", "meshes", "nodes", "scenes", "textures", "extras"}) {
+            if (!model.contains(key)) continue;
+            const std::string member = "\"" + std::string(key) + "\":" + model[key].dump();
+            ASSERT_NE(text.find(member), std::string::npos) << key;
+            EXPECT_NE(made.find(member), std::string::npos) << name << key;
+        }
+    }
+}
+
 TEST_F(ModelForms, PicturesChangeOnTheWay) {
     const auto model = read_model_maps(path("in/m.gltf"));
     ASSERT_TRUE(model);

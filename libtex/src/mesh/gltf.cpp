@@ -262,10 +262,23 @@ bool is_gltf(std::span<const std::byte> head) {
     return text.starts_with("glTF") || (first != std::string_view::npos && text[first] == '{');
 }
 
+namespace {
+
+constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
+
+}  // namespace
+
+std::optional<std::size_t> glb_json_length(std::span<const std::byte> head, std::int64_t size) {
+    if (!text_of(head).starts_with("glTF") || head.size() < 20) return std::nullopt;
+    const std::uint32_t total = load_u32(head, 8), length = load_u32(head, 12);
+    const bool is_sound =
+        load_u32(head, 4) == 2 && load_u32(head, 16) == kJson && total >= 20 && total <= size && length <= total - 20;
+    return is_sound ? std::optional<std::size_t>(length) : std::nullopt;
+}
+
 // GLB: a header of 12 bytes, a chunk of JSON, and perhaps one of bytes (glTF 2.0, 4.4).
 Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes) {
     if (!text_of(bytes).starts_with("glTF")) return GltfChunks{text_of(bytes), {}};
-    constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
     if (bytes.size() < 20) return bad_gltf("truncated: a GLB file has a header of 20 bytes");
     if (const std::uint32_t version = load_u32(bytes, 4); version != 2)
         return unsupported("its GLB version is " + std::to_string(version) + ", only 2 is supported");

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +31,11 @@ struct GltfChunks {
 
 // Errors: bad_data, unsupported.
 Result<GltfChunks> gltf_chunks(std::span<const std::byte> bytes);
+
+// The length of the JSON in a file of `size` bytes, which begins behind the header, if the file is GLB and its header
+// is sound; else nothing.
+inline constexpr std::int64_t kGlbHeader = 20;
+std::optional<std::size_t> glb_json_length(std::span<const std::byte> head, std::int64_t size);
 
 // Errors: those of read_mesh() (mesh_io.h), without a file unless `load` names one; unsupported if triangles are
 // compressed by Draco and `draco` is empty. `colors`: whether colours of vertices are read.
