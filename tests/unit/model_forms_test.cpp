@@ -138,6 +138,20 @@ TEST_F(ModelForms, TheTextThatStaysIsTheSame) {
     }
 }
 
+// MikkTSpace makes none for triangles without an area in UV, and Khronos' validator calls their length an error.
+TEST_F(ModelForms, TangentsWithoutALengthGetOne) {
+    ModelChanges changes;
+    changes.tangents.push_back({0, 0, {{0, 0, 0, -1}, {0, 1, 0, 1}, {0, 0, 0, 0}}});
+    writes("in/m.gltf", "out/t.glb", changes);
+    const auto model = read_model(path("out/t.glb"));
+    ASSERT_TRUE(model) << model.error().message();
+    ASSERT_EQ(model->mesh.parts.at(0).tangents.size(), 3u);
+    for (const Float4& t : model->mesh.parts[0].tangents) {
+        EXPECT_EQ(t.x * t.x + t.y * t.y + t.z * t.z, 1.0f);
+        EXPECT_EQ(t.w * t.w, 1.0f);
+    }
+}
+
 TEST_F(ModelForms, PicturesChangeOnTheWay) {
     const auto model = read_model_maps(path("in/m.gltf"));
     ASSERT_TRUE(model);

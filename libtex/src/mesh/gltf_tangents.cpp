@@ -22,6 +22,12 @@ bool is_same(const Float4& a, const Float4& b) {
 
 bool is_tangent(const std::string& key, int target) { return target < 0 && key == kTangent; }
 
+// MikkTSpace has none for triangles without an area in UV, of which a map shows nothing. glTF wants a length of 1.
+Float4 with_length(const Float4& tangent) {
+    const bool is_none = tangent.x == 0.0f && tangent.y == 0.0f && tangent.z == 0.0f;
+    return is_none ? Float4{1.0f, 0.0f, 0.0f, tangent.w < 0.0f ? -1.0f : 1.0f} : tangent;
+}
+
 // What tells vertices apart: the accessors of all attributes but the tangents.
 std::string key_of(JsonValue primitive) {
     std::string text;
@@ -82,7 +88,7 @@ Result<void> GltfTangents::add(const ModelTangents& tangents) {
     member.node = text_.member("meshes")->element(mesh)->member("primitives")->element(number);
     if (auto read = read_corners(member, vertices.count, tangents.tangents.size()); !read) return read;
     for (std::size_t c = 0; c < member.corners.size(); ++c) {
-        const std::uint32_t vertex = vertex_for(vertices, member.corners[c], tangents.tangents[c]);
+        const std::uint32_t vertex = vertex_for(vertices, member.corners[c], with_length(tangents.tangents[c]));
         member.is_split = member.is_split || vertex != member.corners[c];
         member.corners[c] = vertex;
     }
