@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // repair_bench: which damages repair() undoes in 40 clean maps of ../shared/data/wild4, and how exactly.
 //
-//     repair_bench [MAPS [FIRST]]    the number of maps (40) and of storages (all 5)
+//     repair_bench [MAPS [FIRST]]    the number of maps (40) and of storages (all 5), or "jpeg" for JPEG alone
 //     repair_bench --pairs [MAPS]    two damages at once, in 8 bits
 //     repair_bench --all             what repairs do to all of wild4, undamaged
 //
@@ -149,7 +149,12 @@ bool is_held_out(const std::string& file) {
     return (hash >> 16) % 2 == 1;
 }
 
-void judge(const Codes& codes, const std::string& file, int storages, std::vector<Judged>& all) {
+// From the first storage to the one before `end`.
+struct Storages {
+    int first = 0, end = kStorages;
+};
+
+void judge(const Codes& codes, const std::string& file, const Storages& storages, std::vector<Judged>& all) {
     const bool held_out = is_held_out(file);
     CheckOptions checks;
     const auto plain = check(file, stored_as(values_of(codes, false), Storage::rgb8), checks);
@@ -170,7 +175,7 @@ void judge(const Codes& codes, const std::string& file, int storages, std::vecto
         const Values intact = values_of(codes, damage.with_alpha);
         const auto undamaged = unpack(stored_as(intact, Storage::rgb16));
         const Values damaged = each(intact, damage.plant);
-        for (int s = 0; s < storages; ++s) {
+        for (int s = storages.first; s < storages.end; ++s) {
             const auto storage = static_cast<Storage>(s);
             if (damage.needs_blue && !has_blue(storage)) continue;
             if (damage.with_alpha && storage == Storage::jpeg) continue;
@@ -195,8 +200,9 @@ void judge(const Codes& codes, const std::string& file, int storages, std::vecto
                 for (const auto& step : repaired->steps) ids += " " + text_of(step);
                 ids += ";";
                 for (const auto& fault : repaired->left) ids += " " + std::string(fault.finding.rule->id);
-                std::fprintf(stderr, "%s, %s, %s: %.2f degrees, reference %.2f:%s\n", file.c_str(), damage.name.c_str(),
-                             kStorageNames[s], angle, reference, ids.c_str());
+                std::fprintf(stderr, "%s: %s, %s, %s: %.2f degrees, reference %.2f:%s\n",
+                             held_out ? "held out" : "tune", file.c_str(), damage.name.c_str(), kStorageNames[s], angle,
+                             reference, ids.c_str());
                 continue;
             }
             ++count.undone;
@@ -259,7 +265,12 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "--all") return list_changed();
     const bool is_of_pairs = argc > 1 && std::string_view(argv[1]) == "--pairs";
     const char* const count = is_of_pairs ? (argc > 2 ? argv[2] : nullptr) : (argc > 1 ? argv[1] : nullptr);
-    const int storages = is_of_pairs ? 1 : argc > 2 ? std::clamp(std::atoi(argv[2]), 1, kStorages) : kStorages;
+    Storages storages{0, is_of_pairs ? 1 : kStorages};
+    if (!is_of_pairs && argc > 2) {
+        constexpr int kJpeg = static_cast<int>(Storage::jpeg);
+        const bool is_jpeg = std::string_view(argv[2]) == "jpeg";
+        storages = is_jpeg ? Storages{kJpeg, kJpeg + 1} : Storages{0, std::clamp(std::atoi(argv[2]), 1, kStorages)};
+    }
     std::vector<Judged> all;
     for (const Damage& damage : is_of_pairs ? damage_pairs() : damages()) all.push_back({damage, {}});
     const std::vector<std::string> files = clean_maps(static_cast<std::size_t>(count ? std::atoi(count) : 40));

@@ -2,6 +2,8 @@
 
 #include "reports/repairs.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/text.h"
@@ -57,9 +59,12 @@ std::string repairs_text(const std::string& name, const Repaired& repaired) {
     for (const RepairStep& step : repaired.steps) {
         // Occlusion that stays near 1 looks like the z of short vectors.
         const bool may_lose_blue = step.kind == RepairKind::normalize && repaired.before.more_data;
-        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees{}\n", printable(name), step.rule->id, step.rule->name,
+        // What turned vectors, as blur and contrast do beside their lengths, stays.
+        const bool keeps_directions = step.kind == RepairKind::normalize;
+        text += fmt::format("{}: {} {}: {} ({}), {:.2f} degrees{}{}\n", printable(name), step.rule->id, step.rule->name,
                             text_of(step), name_of(kRepairClassNames, step.certainty), step.degrees,
-                            may_lose_blue ? "; if blue holds occlusion, as in LabPBR, that wipes it out" : "");
+                            may_lose_blue ? "; if blue holds occlusion, as in LabPBR, that wipes it out" : "",
+                            keeps_directions ? "; directions stay as they are" : "");
     }
     for (const FaultLeft& fault : repaired.left) {
         const Finding& finding = fault.finding;
@@ -94,11 +99,15 @@ Json repairs_json(const Repaired& repaired) {
 void RepairTotals::add(const Repaired& of) {
     ++maps;
     ++(of.has_errors() ? refused : !of.steps.empty() ? repaired : of.left.empty() ? whole : kept);
+    const auto is_likely = [](const RepairStep& step) { return step.certainty == RepairClass::likely; };
+    if (!of.has_errors() && std::any_of(of.steps.begin(), of.steps.end(), is_likely)) ++likely;
 }
 
 std::string RepairTotals::text(bool is_dry_run) const {
-    std::string text = fmt::format("{} {}: {} {}repaired, {} without a fault to repair", maps,
-                                   maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "", whole);
+    std::string text =
+        fmt::format("{} {}: {} {}repaired", maps, maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "");
+    if (likely > 0) text += fmt::format(" ({} of them as is likely, but not proven)", likely);
+    text += fmt::format(", {} without a fault to repair", whole);
     if (kept > 0) text += fmt::format(", {} with what it does not repair", kept);
     if (refused > 0)
         text +=

@@ -25,6 +25,7 @@ namespace tex::cli {
 // Counts of maps, for the last line.
 struct RepairTotals {
     int maps = 0, repaired = 0, refused = 0, kept = 0, whole = 0;  // kept: with faults that stay
+    int likely = 0;                                                // of those that are repaired: by a likely step
 
     void add(const Repaired& of);
     [[nodiscard]] std::string text(bool is_dry_run) const;

@@ -42,6 +42,22 @@ public:
         return {component(x_, i, j), component(y_, i, j), z_ == nullptr ? 0.0f : component(z_, i, j)};
     }
     [[nodiscard]] bool has_z() const { return z_ != nullptr; }
+    // Marks the texels of a row that may be no normals: all but the plain ones.
+    void mark_doubtful(int j, std::vector<std::uint8_t>& marks) const {
+        const float *const x = x_->row(j), *const y = y_->row(j), *const z = has_z() ? z_->row(j) : x;
+        const float scale = is_signed_ ? 1.0f : 2.0f, shift = is_signed_ ? 0.0f : -1.0f;
+        const float z_scale = has_z() ? scale : 0.0f, z_shift = has_z() ? shift : 0.0f;
+        const float least = has_z() ? kShortest * kShortest : -1.0f;
+        const float most = has_z() ? kLongest * kLongest : kOutside * kOutside;
+        std::uint8_t* const to = marks.data();
+        for (int i = 0; i < static_cast<int>(marks.size()); ++i) {
+            const float a = scale * x[i] + shift, b = scale * y[i] + shift, c = z_scale * z[i] + z_shift;
+            const float square = a * a + b * b + c * c;
+            const bool is_plain =
+                (square >= least) & (square <= most) & (c > kNotOver) & (std::abs(std::abs(a) - kThird) >= kNearThird);
+            to[i] = is_plain ? 0 : 1;  // 1 for NaN
+        }
+    }
     // Whether no filter and no codec makes this of normals. False for NaN.
     [[nodiscard]] bool is_no_normal(const StoredVector& v) const {
         const float square = v.square();
@@ -59,11 +75,13 @@ public:
     }
 
 private:
+    static constexpr float kThird = 0.57735f, kNearThird = 1.5f / 127.5f;  // of normalised black and white
+    static constexpr float kNotOver = -0.9f;                               // vectors that are turned over lie below
+
     // Whether this is black or white, normalised by some program on the way. One that rebuilds z from x and y turns
     // black's z outwards.
     [[nodiscard]] bool is_bleached(const StoredVector& v) const {
-        constexpr float kThird = 0.57735f, kCode = 1.5f / 127.5f;
-        const auto is = [&](float c) { return std::abs(std::abs(c) - kThird) < kCode; };
+        const auto is = [](float c) { return std::abs(std::abs(c) - kThird) < kNearThird; };
         return is(v.x) && is(v.y) && v.x * v.y > 0.0f && (!has_z() || (is(v.z) && (v.z > 0.0f || v.x < 0.0f)));
     }
 
@@ -146,8 +164,11 @@ private:
 std::optional<std::array<float, 3>> most_frequent(const StoredVectors& map, Extent extent,
                                                   const std::optional<Background>& transparent) {
     BinCounts bins;
+    std::vector<std::uint8_t> is_doubtful(static_cast<std::size_t>(extent.width));
     for (int j = 0; j < extent.height; ++j) {
+        map.mark_doubtful(j, is_doubtful);
         for (int i = 0; i < extent.width; ++i) {
+            if (is_doubtful[static_cast<std::size_t>(i)] == 0) continue;
             const StoredVector v = map.at(i, j);
             if (!map.is_no_normal(v) || (transparent && transparent->holds(i, j))) continue;
             bins.add(grid_bin(v));

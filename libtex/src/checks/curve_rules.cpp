@@ -123,9 +123,18 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     finding.unit = is_gamma ? "gamma" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
     // A change of x and y alone fits no curve of all three by more than some codes.
-    constexpr double kClearlyBetter = 0.7, kMostError = 2.0, kClear = 0.99, kUnclear = 0.9;
-    const bool is_clear = fit->is_in_codes || (fit->error < kMostError && fit->error < kClearlyBetter * fit->other);
-    finding.confidence = is_clear && !fit->is_cut ? kClear : kUnclear;
+    // Nor does a change of another kind, as of saturation or of each channel by itself. Rounding alone makes 0.3 codes.
+    constexpr double kClearlyBetter = 0.7, kMostError = 1.0, kClear = 0.99, kUnclear = 0.9;
+    const bool is_clear = fit->is_in_codes || (fit->error < kMostError && fit->error < kClearlyBetter * fit->other &&
+                                               roundness(curve) <= 1);
+    // x and y that were cut off do not come back, however sure the numbers are.
+    constexpr double kMostCut = 0.01;  // share of the texels
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const double cut = share_cut(curve, tone_texels(context.stored, background));
+    finding.confidence = is_clear && !fit->is_cut && cut <= kMostCut ? kClear : kUnclear;
+    if (cut > kMostCut) {
+        finding.message += "; x or y was cut off in " + percent(cut) + " of the texels, where no repair brings it back";
+    }
     if (fit->is_cut) finding.message += "; z was cut off nearly everywhere, and does not confirm these numbers";
     finding.tone = curve;
 }

@@ -282,6 +282,47 @@ std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& ce
     return ToneFit{in_codes.curve, as_stored, error, as_stored, true};
 }
 
+std::optional<ChannelTone> find_channel_tone(const Stored& stored, const Centre& centre, const Background* background) {
+    constexpr double kOff = 0.03;  // of one channel; the other is nearer than kOffMiddle
+    constexpr double kCode = 1.0 / 255.0;
+    const double off_x = std::abs(centre.x - 0.5), off_y = std::abs(centre.y - 0.5);
+    if (std::max(off_x, off_y) < kOff || std::min(off_x, off_y) > kOffMiddle) return std::nullopt;
+    const std::size_t changed = off_x > off_y ? 0 : 1;
+    const double middle = changed == 0 ? centre.x : centre.y;
+    if (middle < 0.15 || middle > 0.85 || stored.extent().texels() < kLeastToneTexels) return std::nullopt;
+    const ToneTexels texels = tone_texels(stored, background);
+    ChannelTone found{changed == 0 ? Component::x : Component::y, {}, error_of({}, texels), 0.0};
+    if (found.as_stored < kLeastToneError) return std::nullopt;
+    const auto error_with = [&](const ToneCurve& curve) {
+        ToneTexels undone_texels = texels;
+        for (auto& texel : undone_texels) texel[changed] = undone(curve, texel[changed]);
+        return error_of({}, undone_texels);
+    };
+    double least = 1e9;
+    const auto take = [&](const ToneCurve& curve, double most) {
+        const double error = error_with(curve);
+        if (error >= most) return;
+        found.curve = curve;
+        least = found.error = error;
+    };
+    for (int k = -4; k <= 4; ++k) {
+        const double at = middle + 0.5 * k * kCode;
+        take({0.0, 1.0, math::log(0.5) / math::log(at)}, least);
+        take({0.5 - at, 1.5 - at, 1.0}, least);
+        take({0.0, 0.5 / at, 1.0}, least);
+        take({(0.5 - at) / (1.0 - at), 1.0, 1.0}, least);
+    }
+    if (found.error > found.as_stored / kToneLead || found.error > kMostContrastError) return std::nullopt;
+    // People choose round numbers.
+    if (const double gamma = found.curve.gamma; gamma != 1.0) {
+        constexpr double kStep = 0.05, kAlike = 1.05, kAlikeCodes = 0.03;
+        const double most = kAlike * least + kAlikeCodes;
+        const double round = kStep * std::floor(1.0 / gamma / kStep + 0.5);
+        take({0.0, 1.0, 1.0 / round}, most);
+    }
+    return found;
+}
+
 int few_colors(const Stored& stored) {
     constexpr std::size_t kMostColors = 256;
     const auto& planes = stored.image->planes;

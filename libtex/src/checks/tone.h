@@ -33,6 +33,15 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
 // A change of levels that the histogram of 8 bits shows, in a map that leans, so that the middle shows nothing.
 std::optional<ToneFit> find_tone_in_codes(const Stored& stored, const Centre& centre, const Background* background);
 
+// A curve of x or y alone, where it moved one of them off the middle and z fits once it is undone. Levels are shifted,
+// or stay at black or at white.
+struct ChannelTone {
+    Component component;
+    ToneCurve curve;
+    double as_stored = 0.0, error = 0.0;  // as in ToneFit
+};
+std::optional<ChannelTone> find_channel_tone(const Stored& stored, const Centre& centre, const Background* background);
+
 // The number of colours of a picture with a palette, 256 or less; 0 if there are more, or few texels.
 int few_colors(const Stored& stored);
 

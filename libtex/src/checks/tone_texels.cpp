@@ -80,6 +80,13 @@ double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form)
     return static_cast<double>(uncut) / static_cast<double>(std::max<std::size_t>(1, texels.size()));
 }
 
+double share_cut(const ToneCurve& curve, const ToneTexels& texels) {
+    const auto is_cut = [&](double c) { return (curve.black > 0.0 && c <= 0.0) || (curve.white < 1.0 && c >= 1.0); };
+    const auto cut = std::count_if(texels.begin(), texels.end(),
+                                   [&](const auto& texel) { return is_cut(texel[0]) || is_cut(texel[1]); });
+    return static_cast<double>(cut) / static_cast<double>(std::max<std::size_t>(1, texels.size()));
+}
+
 bool has_coarse_middle(const ToneTexels& texels, double middle) {
     constexpr double kCoarse = 6.0 / 255.0;
     for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {

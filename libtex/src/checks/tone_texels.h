@@ -35,6 +35,9 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = Z
 // The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
 double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
 
+// The share of the texels whose x or y the curve may have cut off.
+double share_cut(const ToneCurve& curve, const ToneTexels& texels);
+
 // Whether so few codes are used near the middle of x and y that it is known to six codes at best: a posterised map.
 bool has_coarse_middle(const ToneTexels& texels, double middle);
 

@@ -56,6 +56,24 @@ void find_levels_of(const CheckContext& context, bool is_stretched, Finding& fin
                        " is taken back";
 }
 
+// A change of red or of green alone makes a map lean, and z no longer fits.
+void find_tone_of_one(const CheckContext& context, Finding& finding) {
+    const Stored& stored = context.stored;
+    if (!stored.has_z() || stored.is_signed || context.kind != Kind::normals || has_free_lengths(context)) return;
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const auto found = find_channel_tone(stored, measure_centre(stored, background), background);
+    if (!found) return;
+    const ToneCurve& curve = found->curve;
+    finding.tone = curve;
+    finding.message += "; vectors are unit vectors if " +
+                       (curve.gamma != 1.0 ? "gamma " + decimal(curve.gamma, 2)
+                                           : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
+                                                 decimal(100.0 * curve.white, 0) + " %") +
+                       " of " + std::string(1, "RGBA"[stored.channel(found->component)]) +
+                       " alone are taken back (z then differs by " + decimal(found->error, 1) +
+                       " codes from what x and y imply, and by " + decimal(found->as_stored, 1) + " as stored)";
+}
+
 // Whether x and y went through some contrast, whatever its numbers.
 bool has_gaps_of_contrast(const CheckContext& context) {
     const CodeComb comb(context.stored, context.background ? &*context.background : nullptr);
@@ -135,6 +153,7 @@ void check_means(const CheckContext& context, Findings& findings) {
                                      decimal(counts.mean_x, 3) + ", y " + decimal(counts.mean_y, 3));
         finding.figure = angle;
         finding.unit = "degrees";
+        find_tone_of_one(context, finding);
     }
     const Tally &low = counts[Property::flat_low], &high = counts[Property::flat_high];
     const bool is_low = low.count > high.count;

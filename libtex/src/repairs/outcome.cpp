@@ -33,6 +33,10 @@ bool is_gone(const CheckReport& report, const RepairStep& step, double figure) {
         const Finding* const left = find_finding(report, id);
         return left == nullptr || (!left->tone && left->figure < kLeftOfLengths * figure);
     }
+    // What leaves another curve behind was not the one that the map went through, unless channels are exchanged, too.
+    const bool leaves_curve = std::any_of(std::begin(kTones), std::end(kTones),
+                                          [&](std::string_view tone) { return find_finding(report, tone) != nullptr; });
+    if (takes_curve_back(step.kind) && leaves_curve && find_finding(report, "N308") == nullptr) return false;
     const bool is_of_z = id == "N308" && step.certainty == RepairClass::safe && step.kind == RepairKind::exchange;
     return std::none_of(report.findings.begin(), report.findings.end(), [&](const Finding& finding) {
         if (finding.rule->id == id) return !is_of_z || finding.unit == "component";

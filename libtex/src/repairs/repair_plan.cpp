@@ -98,6 +98,7 @@ std::vector<RepairStep> turns(RepairStep step, const Finding& finding, const Kno
 }
 
 constexpr double kSurely = 0.95;  // Finding::confidence of a tone
+constexpr double kPlainPower = 2.2;
 
 bool has_rule(const CheckReport& report, std::string_view id) {
     return std::any_of(report.findings.begin(), report.findings.end(),
@@ -126,7 +127,9 @@ std::string text_of(const RepairStep& step) {
     switch (step.kind) {
         case exchange: return "exchange " + letter(step.channel) + " and " + letter(step.other);
         case invert: return "invert " + letter(step.channel);
-        case undo_tone: return step.tone ? tone_text(*step.tone) : std::string();
+        case undo_tone:
+            if (!step.tone) return {};
+            return tone_text(*step.tone) + (step.channel < 0 ? std::string() : " in " + letter(step.channel));
         default: break;
     }
     for (const Named<RepairKind>& row : kRepairKindNames) {
@@ -175,8 +178,10 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             if (is_decided) step.certainty = safe;
             break;
         case decode_srgb:
-            if (finding.tone && z >= 0) return {{finding.rule, undo_tone, safe, -1, -1, {}, finding.tone}, step};
-            break;
+            if (z < 0) break;
+            if (finding.tone) return {{finding.rule, undo_tone, safe, -1, -1, {}, finding.tone}, step};
+            // Noise, as of texture compression, may hide which of the two it was. The wrong one leaves N314.
+            return {step, {finding.rule, undo_tone, safe, -1, -1, {}, ToneCurve{0.0, 1.0, kPlainPower}}};
         case divide_by_alpha:
             if (format_info(report.format).channels < 4) return {};
             break;
@@ -192,7 +197,13 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             if (step.certainty == safe && finding.confidence < kSurely) step.certainty = likely;
             break;
         case straighten:
-            // A channel that was shifted leans, too, and leaves vectors that are not unit vectors.
+            // A channel that was changed leans, too, and leaves vectors that are not unit vectors. The other one of x
+            // and y would lean more.
+            if (finding.tone && z >= 0) {
+                return {{finding.rule, undo_tone, likely, x, -1, {}, finding.tone},
+                        {finding.rule, undo_tone, likely, y, -1, {}, finding.tone},
+                        step};
+            }
             if (has_rule(report, "N201")) return {};
             break;
         case normalize:

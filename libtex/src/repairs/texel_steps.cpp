@@ -102,17 +102,18 @@ void divide_row(const LevelTexels& t, int j) {
     }
 }
 
-// Where z was cut off, it follows from x and y. One that was stored in another form was cut off at black, too.
-void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int j) {
+// Of all three channels, or of one. Where z was cut off, it follows from x and y. One that was stored in another form
+// was cut off at black, too.
+void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int of_channel, int j) {
     constexpr float kCutOff = 254.5f / 255.0f;
     const auto black = static_cast<float>(tone.black), span = static_cast<float>(tone.white - tone.black);
     const bool is_cut = tone.white<1.0, is_cut_below = tone.black> 0.0 && form != ZForm::whole;
     const float* const zs = t.z < 0 ? nullptr : t.row(t.z, j);
     for (int i = 0; i < t.image.extent().width; ++i) {
-        const bool is_lost =
-            zs != nullptr && ((is_cut && zs[i] >= kCutOff) || (is_cut_below && zs[i] <= 1.0f - kCutOff));
+        const bool is_lost = zs != nullptr && of_channel < 0 &&
+                             ((is_cut && zs[i] >= kCutOff) || (is_cut_below && zs[i] <= 1.0f - kCutOff));
         for (const int channel : {t.x, t.y, t.z}) {
-            if (channel < 0) continue;
+            if (channel < 0 || (of_channel >= 0 && channel != of_channel)) continue;
             float& c = t.row(channel, j)[i];
             const float old = std::clamp(c, 0.0f, 1.0f);
             const float power =
@@ -126,11 +127,11 @@ void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int 
     }
 }
 
-Result<void> undo_tone_of(const ToneCurve& tone, StoredLevels& levels, const Execution& execution) {
+Result<void> undo_tone_of(const ToneCurve& tone, int channel, StoredLevels& levels, const Execution& execution) {
     const Stored base = levels.stored(0);
     const ZForm form =
         base.has_z() && !levels.is_signed ? likeliest_form(tone, tone_texels(base, nullptr)) : ZForm::whole;
-    return each_row(levels, execution, [&](const LevelTexels& t, int j) { undo_tone_row(t, tone, form, j); });
+    return each_row(levels, execution, [&](const LevelTexels& t, int j) { undo_tone_row(t, tone, form, channel, j); });
 }
 
 void normalize_row(const LevelTexels& t, int j) {
@@ -335,7 +336,7 @@ Result<void> apply_step(const RepairStep& step, double figure, const RepairOptio
             });
         case RepairKind::fill_background: return fill_base(mip, current, levels, execution);
         case RepairKind::rebuild_levels: return build_levels(mip, step.rule->id == "N103", levels, execution);
-        case RepairKind::undo_tone: return undo_tone_of(*step.tone, levels, execution);
+        case RepairKind::undo_tone: return undo_tone_of(*step.tone, step.channel, levels, execution);
         case RepairKind::straighten: return turn_mean_out(levels, execution);
         case RepairKind::turn_left:
         case RepairKind::turn_right: {
