@@ -28,7 +28,8 @@ std::string repair_command(const Finding& finding, const CheckReport& report, co
     const std::string model = report.map.empty() ? "" : type_of_model(report);
     if (!step || (!report.map.empty() && model.empty())) return {};
     std::string text(finding.rule->fix);
-    if (is_any_of(finding.rule->id, {"N201", "N207", "N209"}) && finding.tone) text = std::string(kRepair) + " -o FIXED";
+    if (is_any_of(finding.rule->id, {"N201", "N207", "N209"}) && finding.tone)
+        text = std::string(kRepair) + " -o FIXED";
     if (finding.rule->id == "N308") {
         text = std::string(kRepair) +
                (step->certainty == RepairClass::likely   ? " --likely --y WANTED"

@@ -3,10 +3,13 @@
 #include "repairs/outcome.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include <tex/format.h>
 #include <tex/pack.h>
 
 namespace tex::inline v1 {
@@ -56,10 +59,16 @@ bool takes_curve_back(RepairKind kind) {
 }
 
 Result<double> mean_change(const Texture& before, const Texture& after, const Execution& execution) {
-    const auto base = [&](const Texture& from) -> Result<NormalMap> {
+    // Bands of rows need little memory, and are whole rows of blocks in every format.
+    constexpr int kBand = 120;
+    const Extent extent = before.levels.front().extent;
+    const auto band = [&](const Texture& from, int y, int height) -> Result<NormalMap> {
+        const std::size_t begin = y > 0 ? level_bytes(from.format, {extent.width, y}) : 0;
+        const std::size_t size = level_bytes(from.format, {extent.width, height});
+        const std::byte* const bytes = from.levels.front().bytes.data() + begin;
         Texture one;
         one.format = from.format;
-        one.levels = {from.levels.front()};
+        one.levels.push_back({{extent.width, height}, std::vector<std::byte>(bytes, bytes + size)});
         one.swizzle = from.swizzle;
         one.y_axis = from.y_axis;
         one.normal_encoding = from.normal_encoding;
@@ -67,11 +76,16 @@ Result<double> mean_change(const Texture& before, const Texture& after, const Ex
         if (!chain) return chain.error();
         return std::move(chain->levels.front());
     };
-    const auto a = base(before), b = base(after);
-    if (!a || !b) return 0.0;
-    auto compared = compare(*a, *b, execution);
-    if (!compared) return compared.error();
-    return compared->error.mean;
+    double sum = 0.0;
+    for (int y = 0; y < extent.height; y += kBand) {
+        const int height = std::min(kBand, extent.height - y);
+        const auto a = band(before, y, height), b = band(after, y, height);
+        if (!a || !b) return 0.0;
+        const auto compared = compare(*a, *b, execution);
+        if (!compared) return compared.error();
+        sum += compared->error.mean * height;
+    }
+    return sum / extent.height;
 }
 
 }  // namespace tex::inline v1

@@ -102,8 +102,8 @@ void divide_row(const LevelTexels& t, int j) {
     }
 }
 
-// Of all three channels, or of one. Where z was cut off, it follows from x and y. One that was stored in another form
-// was cut off at black, too.
+// Of all three channels, or of one. Where z was cut off, it follows from x and y. One that was stored
+// in another form was cut off at black, too.
 void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int of_channel, int j) {
     constexpr float kCutOff = 254.5f / 255.0f;
     const auto black = static_cast<float>(tone.black), span = static_cast<float>(tone.white - tone.black);
