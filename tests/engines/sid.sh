@@ -3,7 +3,7 @@
 # sid.sh ROOT ENGINE: godot or blender, in a root of Debian sid, draws the cases.json of the current folder.
 #
 # ROOT is made if it is not there (mmdebstrap, root, 2 GB, some minutes); exits with 77 if that cannot be. "sid.sh ROOT
-# --version ENGINE" prints its package. DRAW=COMMAND runs another command in this folder, such as lit_godot4.gd.
+# --version ENGINE" prints its package. DRAW=COMMAND runs another command in this folder.
 set -euo pipefail
 tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$1 engine=${*: -1}

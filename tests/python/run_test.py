@@ -29,6 +29,15 @@ def test_a_command_writes_the_bytes_of_the_program(commands):
     assert commands.bytes("out/bricks.dds") == commands.bytes("c.dds")
 
 
+def test_models_are_written(commands):
+    (commands.folder / "m.glb").write_bytes((SAMPLES / "broken/N804-scale-not-positive.glb").read_bytes())
+    ran = tex.run("pack-normals", ["m.glb", "-o", "fixed.glb", "--y", "up"], check=True)
+    assert ran.code == 0
+    before, after = (tex.read_model(commands.folder / name) for name in ("m.glb", "fixed.glb"))
+    assert [each["name"] for each in after["maps"]] == [each["name"] for each in before["maps"]]
+    assert [each["bytes"] for each in after["images"]] != [each["bytes"] for each in before["images"]]
+
+
 def test_failures_are_codes_with_their_messages(commands):
     assert tex.run("bake-normals", ["none.png", "-o", "x.dds"])[0] == 3
     ran = tex.run("bake-normals", ["--nonsense"])

@@ -25,7 +25,8 @@ constexpr Container kUnityTypes[] = {png, tiff, tga, bmp, jpeg, exr, dds};
 constexpr Encoding kUnityEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, dxt5nm, bc5};
 // Godot's materials rebuild z from R and G.
 constexpr Container kGodotTypes[] = {png, tga, bmp, jpeg, webp, exr, dds, ktx2};
-constexpr Encoding kGodotEncodings[] = {rgb8, rgba8, rgb16, rgba16, half, float_, rgba16f, rgba32f, bc5, rg8, bc7};
+constexpr Encoding kGodotEncodings[] = {rgb8,    rgba8,   rgb16, rgba16, half,     float_,
+                                        rgba16f, rgba32f, bc5,   bc7,    eac_rg11, uastc};
 constexpr Container kGltfTypes[] = {png, jpeg};
 constexpr Container kBasisTypes[] = {ktx2};
 constexpr Encoding kBasisEncodings[] = {uastc};
