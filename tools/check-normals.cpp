@@ -35,6 +35,7 @@ private:
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] Result<void> process_model(cli::Job& job);
+    [[nodiscard]] Result<void> judge_damaged(cli::Job& job, const Error& error);
     [[nodiscard]] Result<CheckReport> check_one(cli::Job& job, CheckOptions checks, const Execution& execution);
     // Prints what the picture holds, and returns it as JSON.
     [[nodiscard]] Result<cli::Json> classify(cli::Job& job, CheckReport& report);
@@ -164,7 +165,7 @@ Result<cli::Json> CheckNormals::judge(cli::Job& job, CheckReport report, double 
     if (fails && !documents_.writes_baseline()) job.raise(cli::ExitCode::findings);
     const Requirements& require = demands.checks.require;
     job.say(documents_.is_for_github()
-                ? cli::github_text(report, require)
+                ? (is_known && report.findings.empty() ? std::string() : cli::github_text(report, require))
                 : cli::findings_text(report, require) + (lists_y_ ? cli::y_text(report) : "") + cli::pair_text(report) +
                       cli::occlusion_text(report) + cli::seams_text(report));
     cli::Json json = cli::findings_json(report, require);
@@ -224,7 +225,7 @@ Result<void> CheckNormals::process(cli::Job& job) {
 Result<void> CheckNormals::process_model(cli::Job& job) {
     const MeshReadOptions how{job.read_options};
     const auto model = read_model(job.task.input, how);
-    if (!model) return model.error();
+    if (!model) return judge_damaged(job, model.error());
     for (const std::string& remark : model->mesh.remarks) job.warn(remark);
     if (const auto files = mesh_files(job.task.input, how)) {
         for (const std::string& file : *files) documents_.depends_on(file);
@@ -254,6 +255,23 @@ Result<void> CheckNormals::process_model(cli::Job& job) {
         json->erase("findings");
         job.report["maps"].push_back(std::move(*json));
     }
+    const std::lock_guard lock(mutex_);
+    ++totals_.files;
+    return {};
+}
+
+// A model that cannot be read has the finding of a damaged picture, so that baselines can know it, and documents name
+// it.
+Result<void> CheckNormals::judge_damaged(cli::Job& job, const Error& error) {
+    auto report = check_file(job.task.input, rules_.demands_of(job.task.input).checks, job.read_options);
+    if (!report) return report.error();
+    const bool is_damaged = error.code == ErrorCode::bad_data || error.code == ErrorCode::unsupported;
+    if (!is_damaged || !report->error) return error;
+    for (Finding& finding : report->findings) finding.message = error.reason;
+    report->error = error;
+    auto json = judge(job, std::move(*report), 0.0, nullptr, [&]() -> Result<Texture> { return error; });
+    if (!json) return json.error();
+    job.report = std::move(*json);
     const std::lock_guard lock(mutex_);
     ++totals_.files;
     return {};

@@ -28,6 +28,7 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr double kFirstCheck = 0.5;  // of the progress
+constexpr double kFarLean = 20.0;    // degrees that a map leans after z was rebuilt, so that x and y were changed, too
 constexpr int kMostStepsOfRow = 2;   // blue, green, red order takes one step, other orders two
 
 bool names(const std::vector<std::string>& list, const Rule& rule) {
@@ -292,9 +293,14 @@ private:
 
     // Whether the map shows that the step was not the right one. x and y that were exchanged show the direction of
     // green again that is required or stated; a picture that was turned by 90 degrees shows the other one. After the
-    // right turn, slopes follow the heights. Numbers read with the right sign do not lean.
+    // right turn, slopes follow the heights. Numbers read with the right sign do not lean, nor does a z that was lost.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
         if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
+        // What moved x and y, as brightness does, cut z off: with z of x and y as they are, all would lean more.
+        if (step.kind == RepairKind::rebuild_z && !options_.likely) {
+            const Finding* const leaning = find_finding(report, "N207");
+            return leaning != nullptr && leaning->figure > kFarLean;
+        }
         const bool is_by_heights = step.rule->id == "N601";
         const bool turns = step.kind == RepairKind::turn_left || step.kind == RepairKind::turn_right;
         if (turns && options_.turned && !is_by_heights) return false;

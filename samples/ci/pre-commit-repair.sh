@@ -7,8 +7,12 @@
 set -eu
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT
-git diff --cached --name-only -z --diff-filter=ACMR -- '*_n.dds' '*_n.ktx2' '*_n.png' '*_n.exr' '*_n.tga' '*_n.tif' \
-    >"$list"
+# The names of pre-commit.sh, without types that lose something each time.
+set --
+for type in dds ktx2 png exr tga tif tiff bmp; do
+    for end in '[_-]n' '[_-]nm' '[_-]nrm' '[_-]nor' '[_-]norm' 'normal*'; do set -- "$@" ":(icase)*$end.$type"; done
+done
+git diff --cached --name-only -z --diff-filter=ACMR -- "$@" >"$list"
 [ -s "$list" ] || exit 0
 if ! xargs -0 git diff --quiet -- <"$list"; then
     echo 'A staged normal map has changes that are not staged: stage or stash them.' >&2

@@ -12,8 +12,9 @@ mkdir "$work/staged"
 # What projects call normal maps; the end of the name decides, whatever its case.
 set --
 for type in dds ktx2 png exr tga tif tiff jpg jpeg webp bmp; do
-    set -- "$@" ":(icase)*[_-]n.$type" ":(icase)*[_-]nrm.$type" ":(icase)*[_-]nor.$type" ":(icase)*normal*.$type"
+    for end in '[_-]n' '[_-]nm' '[_-]nrm' '[_-]nor' '[_-]norm' 'normal*'; do set -- "$@" ":(icase)*$end.$type"; done
 done
+set -- "$@" ':(icase)*.glb'
 git diff --cached --name-only -z --diff-filter=ACMR -- "$@" >"$work/list"
 [ -s "$work/list" ] || exit 0
 git checkout-index -z --stdin --prefix="$work/staged/" <"$work/list"

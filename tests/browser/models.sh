@@ -69,9 +69,10 @@ while IFS= read -r model; do
     kind=
     ! grep -qa KHR_texture_basisu "$model" || kind=' (of KTX2)'
     if [ -n "$lods" ]; then
-        node modules/node_modules/gltfpack/cli.js -si 0.25 -kn -km -i "$model" -o "$k/low.glb" >"$k/log" 2>&1 &&
-            transfer-normals "$k/low.glb" "$model" -o "$k/lod.glb" --no-sync --quiet >"$k/log" 2>&1 ||
+        if ! { node modules/node_modules/gltfpack/cli.js -si 0.25 -kn -km -i "$model" -o "$k/low.glb" &&
+            transfer-normals "$k/low.glb" "$model" -o "$k/lod.glb" --no-sync --quiet; } >"$k/log" 2>&1; then
             sed "s|^|no LOD of $model: |" "$k/log" | tail -n 1
+        fi
     fi
     for made in "$k"/own.* "$k"/glb/other.glb "$k"/gltf/other.gltf "$k"/lod.glb; do
         [ -e "$made" ] || continue

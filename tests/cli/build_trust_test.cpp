@@ -172,7 +172,8 @@ TEST_F(BuildTrust, AHugeEntryOfACacheIsMadeAgain) {
     const auto bytes = outputs();
     std::vector<std::string> entries;
     for (const std::string& name : scratch_.list()) {
-        if (name.starts_with("cache/") && fs::path(name).filename().string().size() == 64) entries.push_back(name);
+        const bool is_entry = name.starts_with("cache/") && fs::path(name).filename().string().size() == 64;
+        if (is_entry && scratch_.read(name).size() > 1000) entries.push_back(name);  // the other one holds warnings
     }
     ASSERT_EQ(entries.size(), 1u);
     const std::string whole = scratch_.read(entries[0]), key = fs::path(entries[0]).filename();

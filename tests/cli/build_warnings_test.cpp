@@ -91,4 +91,16 @@ TEST_F(BuildWarnings, PicturesWithoutARuleAreCounted) {
     EXPECT_NE(excluded.out.find("; 1 other picture has no rule"), std::string::npos) << excluded.out;
 }
 
+TEST_F(BuildWarnings, OutputsOfInputsThatAreGoneAreCounted) {
+    ASSERT_EQ(build().code, 0);
+    fs::remove(scratch_.path("art/a_n.png"));
+    const Ran gone = run(scratch_, "build-normals", {"--no-sync"});
+    EXPECT_NE(gone.out.find("0 made, 1 up to date; 1 of earlier runs no longer made (--prune removes them)"),
+              std::string::npos)
+        << gone.out;
+    const Ran pruned = run(scratch_, "build-normals", {"--no-sync", "--prune"});
+    EXPECT_NE(pruned.out.find("0 made, 1 up to date, 1 removed"), std::string::npos) << pruned.out;
+    EXPECT_EQ(run(scratch_, "build-normals", {"--no-sync"}).out.find("no longer"), std::string::npos);
+}
+
 }  // namespace tex::cli

@@ -97,6 +97,11 @@ TEST_F(CheckNormalsCi, HookRefusesWhatIsStaged) {
     EXPECT_EQ(said.find("/tmp"), std::string::npos) << said;
     EXPECT_NE(said.find("\nart/a_n.dds"), std::string::npos) << said;
     EXPECT_NE(said.find("pack-normals art/a_n.dds "), std::string::npos) << said;
+    for (const char* name : {"wall_NORM.dds", "wall-nm.dds", "WallNormalGL.dds"}) {
+        const Ran other = shell(scratch_, std::string("git reset -q && cp art/a_n.dds art/") + name +
+                                              " && git add art/" + name + " && git commit -qm wrong");
+        EXPECT_NE((other.out + other.err).find("N401"), std::string::npos) << name << other.out << other.err;
+    }
     EXPECT_EQ(shell(scratch_, "git reset -q && echo text > readme && git add readme && git commit -qm 'no maps'").code,
               0);
 }

@@ -36,6 +36,7 @@ TEST_F(CompareNormals, OneMapInTwoConventionsIsZeroDegreesApart) {
     const Ran ran = compare({"up.exr", "down.exr", "--json"});
     ASSERT_EQ(ran.code, 0) << ran.err;
     EXPECT_EQ(nlohmann::json::parse(ran.out)["degrees"]["max"], 0.0);
+    EXPECT_NE(ran.err.find("down.exr: green points down here, and up in up.exr"), std::string::npos) << ran.err;
     const Ran mistaken = compare({"up.exr", "down.exr", "--y-b", "up", "--json"});
     EXPECT_GT(nlohmann::json::parse(mistaken.out)["degrees"]["mean"], 5.0);
 }
@@ -65,7 +66,8 @@ TEST_F(CompareNormals, MagnifiesTheSmallerMapAsASamplerDoes) {
 }
 
 TEST_F(CompareNormals, ShowsProgressWhereItIsAskedFor) {
-    const std::vector<std::string> files = {"up.exr", "down.exr", "--level", "all", "--report", "page.html"};
+    const std::vector<std::string> files = {"up.exr",  "down.exr", "--y-b",    "down",
+                                            "--level", "all",      "--report", "page.html"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.begin(), files.begin(), files.end());
         return compare(more);

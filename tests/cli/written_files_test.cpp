@@ -189,8 +189,8 @@ TEST_F(WrittenFiles, StayBelowOutDir) {
         "\"{dir}/{stem}_{format}.ktx2\" } } ]");
     ASSERT_EQ(build().code, 0);
     EXPECT_TRUE(scratch_.has("out/art/wall_h_bc5.ktx2"));
-    ASSERT_EQ(run(scratch_, "build-normals", {scratch_.path("normals.toml"), "--no-sync"}).out,
-              "0 made, 1 up to date\n");
+    const Ran again = run(scratch_, "build-normals", {scratch_.path("normals.toml"), "--no-sync"});
+    ASSERT_TRUE(again.out.starts_with("0 made, 1 up to date")) << again.out;
 }
 
 TEST_F(WrittenFiles, BelongToTheFirstOfSeveralOutputs) {

@@ -53,8 +53,9 @@ case $engine in
         printf 'config_version=5\n[rendering]\nrenderer/rendering_method="gl_compatibility"\n' >project.godot
         # What the recipe sets in the Import dock is in the file that a first import makes.
         inside 'godot --headless --import'
-        sed -i -e 's|^compress/mode=0|compress/mode=2|; s|^compress/normal_map=0|compress/normal_map=1|' \
-            -e 's|^mipmaps/generate=false|mipmaps/generate=true|' $(find . -name '*.png.import' -not -path './models/*')
+        find . -name '*.png.import' -not -path './models/*' -exec sed -i -e 's|^compress/mode=0|compress/mode=2|' \
+            -e 's|^compress/normal_map=0|compress/normal_map=1|' \
+            -e 's|^mipmaps/generate=false|mipmaps/generate=true|' {} +
         inside 'godot --headless --import'
         inside 'godot --headless --script godot_bake.gd'
         inside "timeout 600 ${DRAW:-$godot --resolution 64x64 --script godot.gd}"

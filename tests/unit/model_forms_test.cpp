@@ -118,8 +118,8 @@ TEST_F(ModelForms, OneFileBecomesTextAndComesBack) {
 
 // What has no place of bytes in it stays as somebody wrote it: white space, numbers, escapes, the order of the keys.
 TEST_F(ModelForms, TheTextThatStaysIsTheSame) {
-    const std::string odd = R"("EXT_nobody" : {"b":1.50e+00 ,
-	"a":"\u0041\/", "a":-0 , "big":123456789012345678901234567890},)";
+    const std::string odd = std::string(R"("EXT_nobody" : {"b":1.50e+00 ,)") + "\n\t" +
+                            R"("a":"\u0041\/", "a":-0 , "big":123456789012345678901234567890},)";
     std::string text = read("in/m.gltf");
     text.insert(text.find('{') + 1, odd);
     write("in/odd.gltf", text);

@@ -78,4 +78,11 @@ TEST(Repair, CallsLevelsThatCutXOrYOffLikely) {
     EXPECT_TRUE(repaired(damaged, options).texture);
 }
 
+// Brightness moves x, y and z up, and z is cut off: z of the wrong x and y would lean more.
+TEST(Repair, RebuildsNoZOfAMapThatLeans) {
+    const Texture damaged = changed(0, 1, [](double c) { return c + 0.2; });
+    const Repaired left = repaired(damaged);
+    EXPECT_FALSE(left.texture) << plan_of(left);
+}
+
 }  // namespace tex::repaired_maps

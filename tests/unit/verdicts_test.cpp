@@ -169,7 +169,7 @@ TEST(Verdicts, GreyWithAlphaIsNoLayoutOfNormals) {
               Ids{"N210"});
 }
 
-// As a JPEG of it has: heights to be baked, not colours.
+// JPEG leaves so much: heights to be baked, not colours.
 TEST(Verdicts, GreyWithALittleColourIsGrey) {
     const Codes codes = picture(64, 3, [](int i, int j) {
         const int s = shade(i, j);

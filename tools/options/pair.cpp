@@ -90,6 +90,11 @@ Result<MipChain> PairOptions::read_levels(const ComparedMap& map, int which, con
 
 void PairOptions::warn_of_doubts(const std::vector<std::string>& names, Console& console) {
     const char* const options[] = {"--y-a", "--y-b"};
+    if (!y_[0] && !y_[1] && info_[0].y_axis != info_[1].y_axis) {
+        warn(console, names[1],
+             fmt::format("green points {} here, and {} in {}: the normals are compared, not their codes",
+                         name_of(kYAxisNames, info_[1].y_axis), name_of(kYAxisNames, info_[0].y_axis), names[0]));
+    }
     const bool differ = info_[0].y_doubtful != info_[1].y_doubtful;
     for (std::size_t k = 0; k < 2; ++k) {
         const SourceInfo& info = info_[k];

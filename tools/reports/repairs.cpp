@@ -40,14 +40,20 @@ Json step_json(const RepairStep& step) {
 }
 
 // Slopes alone do not show which of green and red is mirrored; heights do.
-std::string_view what_repairs(const FaultLeft& fault) {
+std::string what_repairs(const FaultLeft& fault) {
     if (fault.certainty == RepairClass::likely && fault.finding.rule->id == "N402")
         return "; --likely repairs it if a straight line divides the two parts";
     if (fault.certainty == RepairClass::likely) return "; --likely repairs it";
     if (fault.certainty != RepairClass::choice) return "";
     if (fault.finding.rule->id == "N210") return "; if these are heights, --bumpiness B bakes them";
-    if (fault.finding.rule->id == "N308")
-        return "; --turned left or --turned right repairs it, as the picture was turned; --height FILE shows which";
+    if (fault.finding.rule->id == "N308") {
+        const bool may_be_exchanged = fault.finding.message.find("if green points") != std::string::npos;
+        const bool is_up = fault.finding.message.find("are exchanged, if green points up") != std::string::npos;
+        return std::string("; --turned left or --turned right repairs it if the picture was turned") +
+               (may_be_exchanged ? fmt::format(", and --likely --y {} if x and y were exchanged", is_up ? "up" : "down")
+                                 : "") +
+               "; --height FILE shows which";
+    }
     return "; --mirrored green repairs it if the map is of the other convention, and --mirrored red if the picture was "
            "mirrored from left to right; --height FILE shows which";
 }
@@ -98,7 +104,10 @@ Json repairs_json(const Repaired& repaired) {
 
 void RepairTotals::add(const Repaired& of) {
     ++maps;
-    ++(of.has_errors() ? refused : !of.steps.empty() ? repaired : of.left.empty() ? whole : kept);
+    const bool has_notes_alone = std::all_of(of.left.begin(), of.left.end(), [](const FaultLeft& fault) {
+        return fault.finding.severity == Severity::note;
+    });
+    ++(of.has_errors() ? refused : !of.steps.empty() ? repaired : has_notes_alone ? whole : kept);
     const auto is_likely = [](const RepairStep& step) { return step.certainty == RepairClass::likely; };
     if (!of.has_errors() && std::any_of(of.steps.begin(), of.steps.end(), is_likely)) ++likely;
 }

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/file_status.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "tasks/folders.h"
@@ -130,6 +131,20 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
     if (stored || (stored.error().detail == ErrorDetail::no_space && cache_is_full_.exchange(true))) return;
     outcome.warnings.push_back({task.input, "the cache does not take it: " + stored.error().message() +
                                                 (cache_is_full_ ? "; nothing else is put there" : "")});
+}
+
+// Outputs of earlier runs that are still there, and that no rule makes any more: their inputs are gone or renamed.
+std::size_t BuildRun::count_obsolete() const {
+    std::set<std::string> wanted;
+    for (const BuildTask& task : work_.tasks) wanted.insert(task.outputs.begin(), task.outputs.end());
+    std::size_t count = 0;
+    for (const auto& [output, record] : state_.outputs) {
+        const bool is_there = std::any_of(record.files.begin(), record.files.end(), [&](const auto& file) {
+            return status_of_link(contents_.path(file.first)).has_value();
+        });
+        count += is_there && !wanted.contains(output) ? 1 : 0;
+    }
+    return count;
 }
 
 }  // namespace tex::cli

@@ -240,12 +240,16 @@ void Lister::find_without_rule() {
         if (!is_answered && !is_known(path)) work_.without_rule.push_back(path);
     }
     std::sort(work_.without_rule.begin(), work_.without_rule.end());
-    std::set<std::string> read;  // beside inputs
+    std::set<std::string> folders, read;  // with inputs, and beside them
     for (const BuildTask& task : work_.tasks) {
+        folders.insert(slashed(fs::path(task.input).parent_path()));
         for (const std::string& part : recipes_[task.recipe].own_files(task.input, path_from(root_, task.input)))
             read.insert(slashed(fs::path(part).lexically_normal()));
     }
-    std::erase_if(work_.other_pictures, [&](const std::string& path) { return read.contains(path) || is_known(path); });
+    std::erase_if(work_.other_pictures, [&](const std::string& path) {
+        const bool is_beside = folders.contains(slashed(fs::path(path).parent_path()));
+        return !is_beside || read.contains(path) || is_known(path);
+    });
     std::sort(work_.other_pictures.begin(), work_.other_pictures.end());
 }
 

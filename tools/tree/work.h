@@ -28,7 +28,7 @@ struct WorkList {
     std::vector<std::string> unreadable;  // folders, each with the reason
     // Pictures that are named like normal maps, or like heights without normals, and that no rule is for, sorted.
     std::vector<std::string> without_rule;
-    std::vector<std::string> other_pictures;  // with other names that no rule is for, sorted
+    std::vector<std::string> other_pictures;  // with other names, beside inputs, that no rule is for, sorted
 };
 
 // Lists what the recipes make. Of several recipes that match a file, the first one makes it. Files in out-dir are no

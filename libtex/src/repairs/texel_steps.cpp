@@ -102,12 +102,13 @@ void divide_row(const LevelTexels& t, int j) {
     }
 }
 
-// Of all three channels, or of one. Where z was cut off, it follows from x and y. One that was stored
-// in another form was cut off at black, too.
+// Takes a curve of all three channels back, or of one. Where z was cut off, it follows from x and y. One that was
+// stored in another form was cut off at black, too.
 void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int of_channel, int j) {
     constexpr float kCutOff = 254.5f / 255.0f;
     const auto black = static_cast<float>(tone.black), span = static_cast<float>(tone.white - tone.black);
-    const bool is_cut = tone.white<1.0, is_cut_below = tone.black> 0.0 && form != ZForm::whole;
+    const bool is_cut = tone.white < 1.0;
+    const bool is_cut_below = tone.black > 0.0 && form != ZForm::whole;
     const float* const zs = t.z < 0 ? nullptr : t.row(t.z, j);
     for (int i = 0; i < t.image.extent().width; ++i) {
         const bool is_lost = zs != nullptr && of_channel < 0 &&
