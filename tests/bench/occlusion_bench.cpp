@@ -182,9 +182,13 @@ void print_saga() {
         const auto seconds = [](const rusage& usage) {
             return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
         };
-        const double begin = processor_seconds();
-        const auto maps = occlusion(field, {directions, 0.0f, true, false, false});
-        const double own = processor_seconds() - begin;
+        double own = 1e9;  // the least of three: the first one waits for pages of memory
+        auto maps = occlusion(field, {directions, 0.0f, true, false, false});
+        for (int run = 0; run < 3; ++run) {
+            const double begin = processor_seconds();
+            maps = occlusion(field, {directions, 0.0f, true, false, false});
+            own = std::min(own, processor_seconds() - begin);
+        }
         std::vector<float> theirs(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
         std::ifstream data(name + "_s.sdat", std::ios::binary);
         if (!maps ||
@@ -208,8 +212,12 @@ void print_saga() {
 
 }  // namespace
 
-// An argument: the largest extent, 8192 without.
+// An argument: the largest extent, 8192 without; or saga, for that part alone.
 int main(int count, char** arguments) {
+    if (count > 1 && std::string(arguments[1]) == "saga") {
+        print_saga();
+        return 0;
+    }
     print_errors();
     print_saga();
     std::printf("\n");
