@@ -157,6 +157,18 @@ TEST_F(Init, MapTilesAreHeightsInBytes) {
 }
 
 // Stripes show no direction of green; the X-Ray engine has x, y and z in A, B and G.
+// Their texels have a size, so that the slopes are known.
+TEST_F(Init, ElevationModelsKeepTheSlopesOfTheGround) {
+    std::filesystem::remove_all(scratch_.path("art"));
+    std::filesystem::create_directories(scratch_.path("land"));
+    std::string grid = "ncols 48\nnrows 48\nxllcorner 500000\nyllcorner 5100000\ncellsize 30\n";
+    for (int k = 0; k < 48 * 48; ++k) grid += std::to_string(300 + k * k % 211) + (k % 48 == 47 ? "\n" : " ");
+    scratch_.write("land/alps.asc", grid);
+    make("build-normals --init");
+    const std::string manifest = scratch_.read("normals.toml");
+    EXPECT_NE(manifest.find("match = \"land/alps.asc\"\nsteps = [ { bake = {} } ]"), std::string::npos) << manifest;
+}
+
 TEST_F(Init, GuessesAreMarked) {
     ASSERT_EQ(shell(scratch_,
                     "convert -size 128x128 gradient: -rotate 90 -function Sinusoid 8,0 -depth 8 stripes.png && "

@@ -78,13 +78,16 @@ std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const s
     return fmt::format("{{ pack = {{ {} }} }}", text);
 }
 
-constexpr std::string_view kBakeStep = "{ bake = { bumpiness = \"auto\"";
+constexpr std::string_view kBakeStep = "{ bake = {";
 
-std::string bake_step(const CheckReport& report) {
-    const std::string channel =
-        report.height_bytes ? fmt::format(", channel = \"{}\"", name_of(kHeightChannelNames, *report.height_bytes))
-                            : std::string();
-    return fmt::format("{}{} }} }}", kBakeStep, channel);
+// Heights that lie on the ground have slopes of their own.
+std::string bake_step(const CheckReport& report, bool is_on_ground) {
+    std::string settings = is_on_ground ? "" : " bumpiness = \"auto\"";
+    if (report.height_bytes) {
+        settings += fmt::format("{} channel = \"{}\"", settings.empty() ? "" : ",",
+                                name_of(kHeightChannelNames, *report.height_bytes));
+    }
+    return fmt::format("{}{}{}}} }}", kBakeStep, settings, settings.empty() ? "" : " ");
 }
 
 // The pictures of a tree, what they hold, and why no rule is for some of them.
@@ -93,6 +96,7 @@ public:
     Tree(std::vector<FoundFile> files, std::string root) : files_(std::move(files)), root_(std::move(root)) {
         reports_.resize(files_.size());
         why_not_.resize(files_.size());
+        is_on_ground_.resize(files_.size());
     }
 
     [[nodiscard]] std::string path_of(std::size_t k) const {
@@ -106,6 +110,10 @@ public:
             for (std::size_t k = next++; k < files_.size() && console.host().interruption().empty(); k = next++) {
                 auto report = check_file(path_of(k), {}, running.read, {1, {}});
                 if (report) reports_[k] = std::move(*report);
+                if (reports_[k].kind == PictureKind::heights) {
+                    const auto image = read_image(path_of(k), running.read);
+                    is_on_ground_[k] = image && image->ground ? 1 : 0;
+                }
                 const std::size_t count = ++done;
                 if (shows)
                     console.draw_progress(static_cast<double>(count) / static_cast<double>(files_.size()),
@@ -234,7 +242,7 @@ private:
         } else if (report.kind == PictureKind::heights ||
                    (report.kind == PictureKind::grey && named_as(file.path) == NamedAs::heights)) {
             if (materials.find(name_beginning(file.path)) == materials.end()) {
-                file.settings = bake_step(report);
+                file.settings = bake_step(report, is_on_ground_[k] != 0);
                 return;
             }
             why_not_[k] = "heights with a normal map beside them";
@@ -255,6 +263,7 @@ private:
     const std::string root_;
     std::vector<CheckReport> reports_;
     std::vector<std::string> why_not_;
+    std::vector<char> is_on_ground_;  // heights that state the size of their texels
 };
 
 std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tree) {
@@ -271,11 +280,12 @@ std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tr
         "outputs = [ { format = \"bc5\", y = \"up\", mips = \"all\" } ]\n";
     for (const InferredRule& rule : rules) {
         const bool bakes = rule.settings.starts_with(kBakeStep);
-        text +=
-            fmt::format("\n# {} of {} file{}{}.\n{}[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
-                        rule.files.size(), rule.files.size() == 1 ? "" : "s",
-                        bakes ? "; where you know their height, height-range and world-size are better than auto" : "",
-                        tree.caveats(rule), list_of(rule.match));
+        text += fmt::format("\n# {} of {} file{}{}.\n{}[[rule]]\nmatch = {}\n", bakes ? "Heights" : "Normals",
+                            rule.files.size(), rule.files.size() == 1 ? "" : "s",
+                            rule.settings.find("auto") == std::string::npos
+                                ? ""
+                                : "; where you know their height, height-range and world-size are better than auto",
+                            tree.caveats(rule), list_of(rule.match));
         if (!rule.exclude.empty()) text += fmt::format("exclude = {}\n", list_of(rule.exclude));
         text += fmt::format("steps = [ {} ]\n", rule.settings);
     }
