@@ -95,7 +95,7 @@ TEST_F(BuildWarnings, OutputsOfInputsThatAreGoneAreCounted) {
     ASSERT_EQ(build().code, 0);
     fs::remove(scratch_.path("art/a_n.png"));
     const Ran gone = run(scratch_, "build-normals", {"--no-sync"});
-    EXPECT_NE(gone.out.find("0 made, 1 up to date; 1 of earlier runs no longer made (--prune removes them)"),
+    EXPECT_NE(gone.out.find("0 made, 1 up to date; 1 output of earlier runs is no longer made (--prune removes it)"),
               std::string::npos)
         << gone.out;
     const Ran pruned = run(scratch_, "build-normals", {"--no-sync", "--prune"});

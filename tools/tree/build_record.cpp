@@ -133,8 +133,9 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
                                                 (cache_is_full_ ? "; nothing else is put there" : "")});
 }
 
-// Outputs of earlier runs that are still there, and that no rule makes any more: their inputs are gone or renamed.
-std::size_t BuildRun::count_obsolete() const {
+// For the summary: outputs of earlier runs that are still there, and that no rule makes any more, since their inputs
+// are gone or renamed.
+std::string BuildRun::obsolete_words() const {
     std::set<std::string> wanted;
     for (const BuildTask& task : work_.tasks) wanted.insert(task.outputs.begin(), task.outputs.end());
     std::size_t count = 0;
@@ -144,7 +145,9 @@ std::size_t BuildRun::count_obsolete() const {
         });
         count += is_there && !wanted.contains(output) ? 1 : 0;
     }
-    return count;
+    if (count == 0) return {};
+    return count == 1 ? "; 1 output of earlier runs is no longer made (--prune removes it)"
+                      : fmt::format("; {} outputs of earlier runs are no longer made (--prune removes them)", count);
 }
 
 }  // namespace tex::cli

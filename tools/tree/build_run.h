@@ -92,7 +92,7 @@ private:
     [[nodiscard]] std::optional<std::pair<std::string, std::string>> place_by_rules(const std::string& input,
                                                                                     const std::string& file) const;
     bool remove_files(const OutputRecord& output, const FileTable<bool>& current, std::vector<std::string>& foreign);
-    [[nodiscard]] std::size_t count_obsolete() const;
+    [[nodiscard]] std::string obsolete_words() const;
     [[nodiscard]] ExitCode write_depfile() const;
     [[nodiscard]] QueuedTask queued(const BuildTask& task) const;
     void advance(double& counted, double size, double fraction);

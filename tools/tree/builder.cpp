@@ -383,8 +383,7 @@ ExitCode BuildRun::print_summary(bool is_interrupted) {
     if (totals_.pruned > 0)
         summary += fmt::format(", {} {}", totals_.pruned.load(), options_.dry_run ? "to remove" : "removed");
     const bool knows_all = !options_.prune && !options_.is_part && work_.unreadable.empty();
-    if (const std::size_t count = knows_all ? count_obsolete() : 0; count > 0)
-        summary += fmt::format("; {} of earlier runs no longer made (--prune removes them)", count);
+    if (knows_all) summary += obsolete_words();
     if (const std::size_t count = work_.other_pictures.size(); count > 0) {
         summary += fmt::format("; {} other picture{} no rule{}", count, count == 1 ? " has" : "s have",
                                options_.dry_run ? "" : " (--dry-run lists them)");
