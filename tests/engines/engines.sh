@@ -33,7 +33,7 @@ declare -A packages=(
     [cesium]=cesium@1.145.0
     [filament]=filament@1.53.4
     [model-viewer]=@google/model-viewer@4.4.0
-    [godot]="" [blender]="" # of Debian sid, in a root of its own
+    [godot]="" [blender]="" # of Debian sid: see sid.sh
 )
 order=(three babylon playcanvas phaser cesium filament model-viewer godot blender)
 [ $# -gt 0 ] || set -- "${order[@]}"

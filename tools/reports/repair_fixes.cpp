@@ -90,9 +90,8 @@ std::optional<Fix> repair_fix(const Finding& finding, const CheckReport& report,
     }
     if (finding.rule->id == "N308" && fix.text.find("--likely --y") != std::string::npos) {
         fix.advice =
-            "If bumps look like dents after that, the picture was mirrored along its diagonal: scale-normals --scale "
-            "-1 "
-            "turns the result over";
+            "If bumps look like dents after that, the picture was mirrored along its diagonal: scale-normals "
+            "--scale -1 turns the result over";
     }
     if (fix.text.find("--mirrored green") != std::string::npos) {
         fix.advice =

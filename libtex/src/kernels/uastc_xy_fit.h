@@ -32,7 +32,7 @@ struct UastcXyGuesses {
 };
 void guess_uastc_xy(const Bc7Group& group, int parts, UastcXyGuesses& guesses);
 
-// In Bc7Group, x has the colour indices. So has y, unless it has a plane of its own, which has the scalar ones.
+// In Bc7Group, x has the colour indices; y has them, too, or the scalar ones of a second plane.
 void fit_uastc_xy(const Bc7Kind& kind, const Bc7Steps& steps, Bc7Group& group);
 
 }  // namespace tex::inline v1
