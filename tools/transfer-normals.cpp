@@ -242,6 +242,9 @@ Result<void> TransferNormals::write(cli::Job& job, const Meshes& meshes, Transfe
     if (!written) return written.error();
     cli::report_texture(job, extent, written->levels, with, written->bytes, rdo);
     note_output(job, {extent, written->levels, extent != rays_.extent(), with.encoding});
+    // The model keeps its old map, which was made for other triangles.
+    if (is_model(job.task.input) && meshes.low.selected().has_normal_map)
+        note_pictures(job, "has a normal map, and its new map is written as a picture");
     return {};
 }
 

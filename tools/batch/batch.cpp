@@ -194,6 +194,17 @@ Result<std::vector<Task>> Batch::plan() const {
     return tasks;
 }
 
+void Converter::note_pictures(Job& job, const std::string& what) {
+    const bool is_asked = !files.output.empty() || !files.name.empty() || output.container || output.format;
+    if (is_asked || !output.engines.empty()) return;
+    const std::string extension = std::filesystem::path(job.task.input).extension().string();
+    const std::string_view kept = name_of(kContainerNames, job.task.container);
+    repeated_.add(job, job.task.input,
+                  fmt::format("{}; --name '{{stem}}{}' writes the model itself (--container {}: without this "
+                              "warning)",
+                              what, extension, kept));
+}
+
 void Converter::note_output(Job& job, const OutputFacts& facts, const std::string& about) {
     const std::string& file = about.empty() ? job.task.map_path() : about;
     const Extent block = format_info(encoding_info(facts.encoding).format).block;
@@ -217,15 +228,7 @@ void Converter::note_output(Job& job, const OutputFacts& facts, const std::strin
                             chain->mip.max_side, facts.extent.width, facts.extent.height));
         }
     }
-    // Nothing says that pictures are wanted, and this command can write the model.
-    if (job.task.model && rules().writes_models && files.output.empty() && files.name.empty() && !output.container &&
-        !output.format && output.engines.empty()) {
-        const std::string extension = std::filesystem::path(job.task.input).extension().string();
-        repeated_.add(job, job.task.input,
-                      fmt::format("its normal maps are written as pictures; --name '{{stem}}{}' writes the model with "
-                                  "them (--container png: without this warning)",
-                                  extension));
-    }
+    if (job.task.model && rules().writes_models) note_pictures(job, "its normal maps are written as pictures");
     // Blocks of ASTC may reach beyond the border. check-normals finds the same (N106).
     const bool needs_whole_blocks =
         has_blocks && block == Extent{4, 4} && !name_of(kEncodingNames, facts.encoding).starts_with("astc");

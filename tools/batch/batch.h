@@ -130,6 +130,9 @@ protected:
     [[nodiscard]] virtual const MipChainOptions* mip_chain() const { return nullptr; }
     [[nodiscard]] virtual OutputRules rules() const { return {}; }
     [[nodiscard]] Result<std::vector<Task>> plan() const override;
+    // Warns of a job whose input is a model and whose outputs are pictures, unless an option asks for pictures: `what`
+    // is said of the input, and how to get the model follows.
+    void note_pictures(Job& job, const std::string& what);
 
 private:
     [[nodiscard]] const OutputRules& known_rules() const;
