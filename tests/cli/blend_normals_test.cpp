@@ -73,6 +73,7 @@ TEST_F(BlendNormals, LayersTakeTheirOwnOptionsOrShareOne) {
         const std::string value = option == "--detail-wrap" ? "clamp" : option == "--offset" ? "0.25,0.5" : "0.5";
         does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--tiling", "2"});
         std::vector<std::string> arguments = {"base.exr", "detail.exr", "-o", "changed.exr", option, value};
+        arguments.insert(arguments.end(), {"--wrap", "clamp"});
         if (option != "--tiling") arguments.insert(arguments.end(), {"--tiling", "2"});
         does("blend-normals", arguments);
         EXPECT_GT(angle("x.exr", "changed.exr"), 0.1) << option;
@@ -232,6 +233,46 @@ TEST_F(BlendNormals, MisuseIsRefused) {
     refuses({"base.exr", "detail.exr", "-o", "x.dds", "--extent", "0x5"}, "--extent: 0 is not at least 1");
     refuses({"base.exr", "detail.exr", "-o", "x.dds", "--extent", "65536"},
             "--extent: 65536x65536 texels are more than the limit of 1073741824; --max-texels raises it");
+}
+
+// Wrong in the picture, and nothing of it shows in an exit code: each was silent once.
+TEST_F(BlendNormals, SaysWhatThePlaceOfADetailCosts) {
+    const auto warnings = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"base.exr", "detail.exr", "-o", "o.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Ran ran = go("blend-normals", arguments);
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return ran.err;
+    };
+    const auto has = [](const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find(part), std::string::npos) << text;
+    };
+    ASSERT_EQ(probe(scratch_.path("base.exr"))->width, 512);
+    ASSERT_EQ(probe(scratch_.path("detail.exr"))->width, 128);
+    EXPECT_EQ(warnings({"--tiling", "8"}), "");
+    has(warnings({"--tiling", "16"}),
+        "detail.exr: repeats so often that its 128x128 texels shrink to 32x32; an extent of 2048x2048 keeps its finest "
+        "bumps, and one that is given, such as 512x512, is taken without this warning");
+    for (const char* extent : {"512x512", "2048x2048"}) EXPECT_EQ(warnings({"--tiling", "16", "--extent", extent}), "");
+    has(warnings({"--tiling", "2.5"}),
+        "detail.exr: repeats 2.5 times, so that the result has seams where it repeats; a wrap of clamp says that it "
+        "does not repeat");
+    has(warnings({"--rotate", "30"}), "detail.exr: is rotated by 30 degrees, so that");
+    for (const char* option : {"--tiling", "--rotate"}) EXPECT_EQ(warnings({option, "2.5", "--wrap", "clamp"}), "");
+    EXPECT_EQ(warnings({"--tiling", "2", "--rotate", "90"}), "");
+}
+
+// The luma of a normal map, or of colours, is no mask.
+TEST_F(BlendNormals, AMaskOfColoursNeedsAChannel) {
+    does("pack-normals", {"detail.exr", "-o", "n.png", "--mips", "none"});
+    const Ran ran = go("blend-normals", {"base.exr", "detail.exr", "-o", "o.exr", "--mask", "n.png"});
+    EXPECT_EQ(ran.code, 4);
+    EXPECT_NE(ran.err.find("n.png: its channels differ (R is "), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("name the one that is the mask, such as --mask n.png:r"), std::string::npos) << ran.err;
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "o.exr", "--mask", "n.png:r"}).code, 0);
+    // Lossy and block-compressed grey is grey.
+    EXPECT_EQ(shell(scratch_, "convert waves.png -colorspace gray waves.jpg").code, 0);
+    EXPECT_EQ(go("blend-normals", {"base.exr", "detail.exr", "-o", "o.exr", "--mask", "waves.jpg"}).code, 0);
 }
 
 }  // namespace tex::cli

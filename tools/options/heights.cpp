@@ -2,6 +2,7 @@
 
 #include "options/heights.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
@@ -197,6 +198,33 @@ Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Exe
     auto values = height_field(*image, channel, execution);
     if (!values) return values.error().of(source.file);
     return std::move(values->height);
+}
+
+Result<Plane<float>> read_only_channel(Job& job, const ChannelFile& source, const std::string& advice) {
+    const Execution execution{job.threads(), {}};
+    if (source.channel != HeightChannel::automatic) return read_channel(job, source, execution);
+    ReadOptions read = job.read_options;
+    read.values = FileValues::unit;
+    const auto image = read_image(source.file, read);
+    if (!image) return image.error();
+    if (image->planes.size() < 3) return read_channel(job, source, execution);
+    constexpr float kGrey = 8.5f / 255.0f;  // how far blocks of BC1 and lossy pictures move grey
+    std::string ranges;
+    bool differ = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+        float least = 1.0f, most = 0.0f;
+        for (int j = 0; j < image->extent().height; ++j) {
+            for (int i = 0; i < image->extent().width; ++i) {
+                const float value = image->planes[c].at(i, j);
+                least = std::min(least, value);
+                most = std::max(most, value);
+                differ = differ || !(std::abs(value - image->planes[1].at(i, j)) <= kGrey);
+            }
+        }
+        ranges += fmt::format("{}{} is {:.2f} to {:.2f}", c == 0 ? "" : ", ", "RGB"[c], least, most);
+    }
+    if (!differ) return read_channel(job, {source.file, HeightChannel::g}, execution);
+    return Error{ErrorCode::bad_data, source.file, fmt::format("its channels differ ({}): {}", ranges, advice)};
 }
 
 void HeightReader::add_header_file(Task& task) {

@@ -86,6 +86,9 @@ struct ChannelFile {
 };
 [[nodiscard]] ChannelFile parse_channel_file(const std::string& text);
 [[nodiscard]] Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution);
+// read_channel() of a picture whose channels must hold the same unless one is named: luma would be none of them.
+// `advice` ends the error of others, such as "name the one ...".
+[[nodiscard]] Result<Plane<float>> read_only_channel(Job& job, const ChannelFile& source, const std::string& advice);
 
 // Reads the heights of jobs with all of the groups above, and prints the warnings about them.
 class HeightReader {

@@ -119,7 +119,10 @@ std::vector<LayerFile> LayerOptions::layers(Job& job, const std::vector<std::str
         layer.strength = strength_.of(k, layer.strength);
         const ChannelFile mask = mask_.of(k, {});
         if (mask.file.empty()) continue;
-        layer.mask = [&job, mask] { return read_channel(job, mask, {job.threads(), {}}); };
+        layer.mask = [&job, mask] {
+            return read_only_channel(
+                job, mask, fmt::format("name the one that is the mask, such as --mask {}:r", shell_file(mask.file)));
+        };
     }
     return files;
 }

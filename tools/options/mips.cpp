@@ -44,8 +44,9 @@ void MipChainOptions::add(Command& command, bool with_keep, std::string levels_d
                 try {
                     levels = parse_int(text, 1, std::numeric_limits<int>::max());
                 } catch (const UsageError&) {
-                    throw UsageError(fmt::format("must be all, {}none or a number of at least 1, not '{}'",
-                                                 with_keep ? "keep, " : "", printable(text)));
+                    throw UsageError(fmt::format("must be all, {}none or a number of at least 1, not '{}'{}",
+                                                 with_keep ? "keep, " : "", printable(text),
+                                                 text == "0" ? ": all builds every level, as 0 does elsewhere" : ""));
                 }
             }
         });

@@ -66,34 +66,12 @@ Result<Texture> read_kept(const ChannelFile& file, const ReadOptions& read) {
                  fmt::format("has no channel {}, into which --roughness-into writes", "RGBA"[place])};
 }
 
-// The map of the material's roughness. Without a channel, all of them must be the same: luma would be none of them.
+// The map of the material's roughness.
 Result<Plane<float>> read_roughness(Job& job, const ChannelFile& file) {
-    const Execution execution{job.threads(), {}};
-    if (file.channel != HeightChannel::automatic) return read_channel(job, file, execution);
-    ReadOptions read = job.read_options;
-    read.values = FileValues::unit;
-    const auto image = read_image(file.file, read);
-    if (!image) return image.error();
-    if (image->planes.size() < 3) return read_channel(job, file, execution);
-    std::string ranges;
-    bool differ = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-        float least = 1.0f, most = 0.0f;
-        for (int j = 0; j < image->extent().height; ++j) {
-            for (int i = 0; i < image->extent().width; ++i) {
-                const float value = image->planes[c].at(i, j);
-                least = std::min(least, value);
-                most = std::max(most, value);
-                differ = differ || !(value == image->planes[0].at(i, j));
-            }
-        }
-        ranges += fmt::format("{}{} is {:.2f} to {:.2f}", c == 0 ? "" : ", ", "RGB"[c], least, most);
-    }
-    if (!differ) return read_channel(job, {file.file, HeightChannel::r}, execution);
-    return Error{ErrorCode::bad_data, file.file,
-                 fmt::format("its channels differ ({}): name the one that holds roughness, such as --roughness-in "
-                             "{}:g, which it is in textures of occlusion, roughness and metalness (ORM)",
-                             ranges, shell_file(file.file))};
+    return read_only_channel(job, file,
+                             fmt::format("name the one that holds roughness, such as --roughness-in {}:g, which it is "
+                                         "in textures of occlusion, roughness and metalness (ORM)",
+                                         shell_file(file.file)));
 }
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include "stream/blending.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fields/range.h"
 #include "rows/extra_rows.h"
@@ -30,6 +32,39 @@ std::string stretch_text(const Layer& layer, const Extent& detail, const Extent&
     return "is stretched " + rounded_text(std::max(stretch, 1.0 / stretch), 3) + " to 1 on the base of " +
            std::to_string(base.width) + "x" + std::to_string(base.height) + "; a tiling of " +
            rounded_text(layer.tiling_x, 4) + "," + rounded_text(tiling_y, 4) + " keeps its shape";
+}
+
+std::string sides_text(double width, double height) {
+    const auto side = [](double texels) {
+        return std::to_string(static_cast<int>(std::clamp(std::round(texels), 1.0, double{kMaxExtent})));
+    };
+    return side(width) + "x" + side(height);
+}
+
+// What to say of a detail whose repeats have less than half of its texels in the result. Empty if they have more.
+std::string shrink_text(const Layer& layer, const Extent& detail, const Extent& result) {
+    const double across = static_cast<double>(layer.tiling_x), along = static_cast<double>(layer.tiling_y);
+    const double shrunk = std::max(detail.width * across / result.width, detail.height * along / result.height);
+    constexpr double kMost = 2.0;
+    if (shrunk <= kMost) return {};
+    return "repeats so often that its " + sides_text(detail.width, detail.height) + " texels shrink to " +
+           sides_text(result.width / across, result.height / along) + "; an extent of " +
+           sides_text(shrunk * result.width, shrunk * result.height) + " keeps its finest bumps, and one that is " +
+           "given, such as " + sides_text(result.width, result.height) + ", is taken without this warning";
+}
+
+// What to say of a detail that is cut where the result repeats. Empty if it is not.
+std::string cut_text(const Layer& layer, const BlendOptions& blend) {
+    const bool repeats_x = blend.wrap_x == Wrap::repeat, repeats_y = blend.wrap_y == Wrap::repeat;
+    const std::string ending =
+        ", so that the result has seams where it repeats; a wrap of clamp says that it does not repeat";
+    if ((repeats_x || repeats_y) && std::remainder(layer.rotation, 90.0f) != 0.0f)
+        return "is rotated by " + rounded_text(layer.rotation, 4) + " degrees" + ending;
+    const auto is_cut = [](float tiling, Wrap wrap) { return wrap == Wrap::repeat && std::round(tiling) != tiling; };
+    const bool cuts_x = repeats_x && is_cut(layer.tiling_x, layer.wrap_x);
+    const bool cuts_y = repeats_y && is_cut(layer.tiling_y, layer.wrap_y);
+    if (!cuts_x && !cuts_y) return {};
+    return "repeats " + rounded_text(cuts_x ? layer.tiling_x : layer.tiling_y, 4) + " times" + ending;
 }
 
 }  // namespace
@@ -95,8 +130,10 @@ Result<void> Blending::open(const Execution& execution) {
         const Extent detail = input.shared ? input.shared->chain.levels.front().extent()
                               : input.step ? input.map().extent(0)
                                            : input.chain.levels.front().extent();
-        std::string stretched = stretch_text(placed, detail, base);
-        if (!stretched.empty()) input.info.remarks.push_back(std::move(stretched));
+        std::vector<std::string> remarks = {stretch_text(placed, detail, base), cut_text(placed, options_.blend)};
+        if (options_.blend.extent == Extent{}) remarks.push_back(shrink_text(placed, detail, extent_));
+        for (std::string& remark : remarks)
+            if (!remark.empty()) input.info.remarks.push_back(std::move(remark));
         if (!layer.mask) continue;
         Result<Plane<float>> mask = layer.mask();
         if (!mask) return mask.error();
