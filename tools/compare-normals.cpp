@@ -53,6 +53,7 @@ private:
     cli::RunOptions running_;
     std::vector<std::string> sources_;  // everything that is read
     bool has_folders_ = false;
+    cli::FolderTally tally_;
     cli::ComparisonRun run_{{}, pair_.warnings()};
 };
 
@@ -172,10 +173,11 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
         if (!running_.json)
             code = std::max(code, console.print(fmt::format("{}, {}:\n", cli::printable(a), cli::printable(b))));
         const auto compared = compare_files(console, run_.inputs, nullptr);
+        if (!compared) tally_.add_failure();
         code = std::max(code, compared ? *compared : report_failure(console, compared.error()));
         pair_.forget_warnings();
     }
-    return code;
+    return running_.json ? code : std::max(code, console.print(tally_.text()));
 }
 
 Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console, const std::vector<std::string>& names,
@@ -230,6 +232,7 @@ Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const 
         code = std::max({code, level.within ? cli::ExitCode::done : cli::ExitCode::findings, printed});
         levels.push_back(level);
         if (k > first) continue;
+        tally_.add(pair.maps[0].name(), level.error);
         if (auto written = documents_.write_heat_map(*comparison); !written) return written.error();
         degrees = std::move(comparison->degrees);
     }

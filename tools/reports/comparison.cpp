@@ -120,6 +120,13 @@ Result<void> CompareDocuments::write_heat_map(const Comparison& comparison) cons
     return write_texture(heat_map_path_, *picture);
 }
 
+std::string FolderTally::text() const {
+    std::string text = fmt::format("maps compared: {}, of which {} differ", maps_, different_);
+    if (failed_ > 0) text += fmt::format("; files that failed: {}", failed_);
+    if (different_ > 0) text += fmt::format("; largest mean: {:.4f} degrees, of {}", most_, printable(most_of_));
+    return text + "\n";
+}
+
 Result<void> CompareDocuments::write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
                                           const Plane<float>& degrees) const {
     auto entry = compare_entry(levels, std::move(a), std::move(b), degrees, heat_map_scale_);

@@ -26,6 +26,25 @@ struct ComparisonRun {
 // Prints the figures of a level: as a line of a table (the first line has a heading above it) or as JSON.
 [[nodiscard]] ExitCode print_level(Console& console, const ComparisonRun& run, const ComparedLevel& level, bool as_json,
                                    bool is_first);
+// What the comparisons of two folders found, as their last line.
+class FolderTally {
+public:
+    void add(const std::string& name, const AngularError& error) {
+        ++maps_;
+        if (error.max > 0.0) ++different_;
+        if (error.mean <= most_) return;
+        most_ = error.mean;
+        most_of_ = name;
+    }
+    void add_failure() { ++failed_; }
+    [[nodiscard]] std::string text() const;
+
+private:
+    int maps_ = 0, different_ = 0, failed_ = 0;
+    double most_ = 0.0;  // the largest mean angle, in degrees
+    std::string most_of_;
+};
+
 // Prints a failure as JSON.
 [[nodiscard]] ExitCode print_failure(Console& console, const ComparisonRun& run, const Error& error);
 
