@@ -35,8 +35,9 @@ protected:
             "waves.png");
         for (const char* name : {"art/wall_h.png", "art/dune_h.png"}) scratch_.add_sample("dunes.png", name);
     }
-    void make(const std::string& line) {
-        const Ran ran = shell(scratch_, line + " --no-sync --quiet");
+    void make(const std::string& line) { does(line + " --no-sync --quiet"); }
+    void does(const std::string& line) {
+        const Ran ran = shell(scratch_, line);
         ASSERT_EQ(ran.code, 0) << line << ": " << ran.err;
     }
 
@@ -156,7 +157,6 @@ TEST_F(Init, MapTilesAreHeightsInBytes) {
     EXPECT_NE(again.out.find("\"up_to_date\":[\"build/textures/land/terrarium"), std::string::npos) << again.out;
 }
 
-// Stripes show no direction of green; the X-Ray engine has x, y and z in A, B and G.
 // Their texels have a size, so that the slopes are known.
 TEST_F(Init, ElevationModelsKeepTheSlopesOfTheGround) {
     std::filesystem::remove_all(scratch_.path("art"));
@@ -169,6 +169,31 @@ TEST_F(Init, ElevationModelsKeepTheSlopesOfTheGround) {
     EXPECT_NE(manifest.find("match = \"land/alps.asc\"\nsteps = [ { bake = {} } ]"), std::string::npos) << manifest;
 }
 
+// Faults keep rules away, and the error says which; exchanged channels need no other space.
+TEST_F(Init, FaultsAreTheReasonWhyNothingIsWritten) {
+    does("convert art/wall_n.png -separate -swap 0,2 -combine PNG24:bgr.png");
+    const Ran kind = shell(scratch_, "check-normals --classify bgr.png");
+    EXPECT_EQ(kind.out.rfind("normals ", 0), 0u) << kind.out;
+    does("mkdir faulty; mv bgr.png faulty; head -c 500 art/wall_n.png > faulty/torn.png");
+    const Ran none = shell(scratch_, "cd faulty; build-normals --init");
+    EXPECT_EQ(none.code, 4);
+    EXPECT_NE(none.err.find("no rule can be for any of them: bgr.png (normals, in which check-normals finds errors), "
+                            "torn.png (cannot be decoded)"),
+              std::string::npos)
+        << none.err;
+}
+
+// Models are no textures of a tree, and their maps are checked all the same.
+TEST_F(Init, ModelsAreCounted) {
+    does("touch art/a.glb bought/b.GLTF");
+    const Ran ran = shell(scratch_, "build-normals --init");
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_NE(ran.out.find("models without a rule: 2; check-normals and repair-normals take their maps"),
+              std::string::npos)
+        << ran.out;
+}
+
+// Stripes show no direction of green; the X-Ray engine has x, y and z in A, B and G.
 TEST_F(Init, GuessesAreMarked) {
     ASSERT_EQ(shell(scratch_,
                     "convert -size 128x128 gradient: -rotate 90 -function Sinusoid 8,0 -depth 8 stripes.png && "
@@ -246,8 +271,7 @@ TEST_F(Init, AMissingManifestNamesTheOption) {
     std::filesystem::create_directories(scratch_.path("empty"));
     const Ran empty = shell(scratch_, "cd empty && build-normals --init");
     EXPECT_EQ(empty.code, 4);
-    EXPECT_NE(empty.err.find("nothing is written: 0 files; no picture below this folder holds"), std::string::npos)
-        << empty.err;
+    EXPECT_NE(empty.err.find("nothing is written: no picture is below this folder"), std::string::npos) << empty.err;
     EXPECT_FALSE(scratch_.has("empty/normals.toml"));
 }
 

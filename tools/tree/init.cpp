@@ -29,6 +29,7 @@
 #include "reports/baseline.h"
 #include "reports/kinds.h"
 #include "tasks/find_files.h"
+#include "tasks/model_output.h"
 #include "threads/fork_join.h"
 #include "tree/infer_rules.h"
 
@@ -184,6 +185,15 @@ public:
         return text;
     }
 
+    // Why no rule is for the files, of which the first few are named.
+    [[nodiscard]] std::string reasons() const {
+        constexpr std::size_t kMost = 5;
+        std::vector<std::string> words;
+        for (std::size_t k = 0; k < files_.size() && words.size() < kMost; ++k)
+            if (!why_not_[k].empty()) words.push_back(fmt::format("{} ({})", printable(path_of(k)), why_not_[k]));
+        return join(words) + (files_.size() > kMost ? " ..." : "");
+    }
+
     // What a rule says of files that their texels do not show.
     [[nodiscard]] std::string caveats(const InferredRule& rule) const {
         std::string text;
@@ -298,6 +308,15 @@ Result<void> write_new(const std::string& path, const std::string& text) {
     return write_document(path, text, write);
 }
 
+// What is there, if no picture is.
+std::string no_pictures(const std::string& where, std::ptrdiff_t models) {
+    if (models == 0) return fmt::format("nothing is written: no picture is below {}", where);
+    return fmt::format(
+        "nothing is written: no picture is below {}, and no rule is for models ({}): check-normals and "
+        "repair-normals take their maps",
+        where, models);
+}
+
 ExitCode failed(const Error& error, Console& console) {
     console.error(error.message());
     return exit_code(error.code);
@@ -311,6 +330,7 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
         if (fs::symlink_status(path).type() != fs::file_type::not_found)
             return failed({ErrorCode::io, path, "is there already; --init writes new files only"}, console);
     }
+    const std::string where = root.empty() ? "this folder" : root;
     const Glob all("**");
     FileSearch search;
     search.globs = {&all};
@@ -319,7 +339,10 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
         console.warning(folder + ": " + reason);
     };
     std::vector<FoundFile> pictures = find_files(root, search);
+    const auto models =
+        std::count_if(pictures.begin(), pictures.end(), [](const FoundFile& file) { return names_model(file.path); });
     std::erase_if(pictures, [](const FoundFile& file) { return !is_picture(file.path) && !is_height_file(file.path); });
+    if (pictures.empty()) return failed({ErrorCode::bad_data, manifest, no_pictures(where, models)}, console);
     Tree tree(std::move(pictures), root);
     tree.check(running, console);
     if (const std::string_view by = console.host().interruption(); !by.empty()) {
@@ -329,11 +352,9 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
     }
     const std::vector<InferredRule> rules = infer_rules(tree.settings());
     if (rules.empty()) {
-        const std::string where = root.empty() ? "this folder" : root;
         return failed({ErrorCode::bad_data, manifest,
-                       fmt::format("nothing is written: {}; no picture below {} holds normals or heights that a rule "
-                                   "could be for",
-                                   tree.totals().text(), where)},
+                       fmt::format("nothing is written: {} below {}, and no rule can be for any of them: {}",
+                                   tree.totals().text(), where, tree.reasons())},
                       console);
     }
     if (auto written = write_new(manifest, manifest_text(rules, tree)); !written)
@@ -348,6 +369,8 @@ ExitCode init_tree(const std::string& root, const std::string& manifest, const R
                     tree.count_findings(), tree.count_findings() == 1 ? "" : "s");
     const std::string at = (manifest == "normals.toml" ? "" : " " + shell_word(manifest)) +
                            (root.empty() ? "" : " --root " + shell_word(root));
+    if (models > 0)
+        text += fmt::format("models without a rule: {}; check-normals and repair-normals take their maps\n", models);
     text += fmt::format(
         "next: build-normals{} --dry-run shows what it makes, and build-normals{} makes it\n"
         "      check-normals {} --baseline {} fails for new findings alone\n",

@@ -44,6 +44,10 @@ void set_kind(const CheckContext& context, PictureKind found, CheckReport& repor
             return;
         case PictureKind::normals:
         case PictureKind::object_space: {
+            // Where x or y stand for z, vectors point away, too: no other space is needed.
+            const auto& findings = report.findings;
+            if (std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.rule->id == "N308"; }))
+                report.kind = PictureKind::normals;
             const bool is_measured = measure.texels > 0 && context.stored.has_z();
             const double unit =
                 is_measured ? confidence_of(most_unit(measure), thresholds::kUnitShare, kUsualUnit) : kUnmeasured;
