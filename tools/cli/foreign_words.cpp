@@ -217,6 +217,7 @@ std::string foreign_word_answer(std::string_view name, const std::vector<std::st
 
 std::string unwritten_type_answer(std::string_view name) {
     const std::string small = lower_case(std::string(name));
+    if (small == "html") return "; pages are written by --report: check-normals n.png --report page.html";
     for (const UnwrittenType& row : kUnwrittenTypes) {
         if (has_name(row.names, small))
             return fmt::format("; {} is not written: make n.png, then run {}", small, row.command);

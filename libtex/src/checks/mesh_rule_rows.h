@@ -95,7 +95,7 @@ inline constexpr Rule kMeshRules[] = {
      ""},
     {"N805", "double-sided-tangents", model, note, true, "A double-sided material is on a mesh with tangents.",
      "On back faces, glTF turns the normal over. Readers differ in whether the tangent turns with it: a bump is a dent "
-     "from behind in three.js, Babylon.js, Cesium and filament, and a bump in PlayCanvas.",
+     "from behind in three.js, Babylon.js, Cesium, filament and Blender, and a bump in PlayCanvas and Godot.",
      "Make the material single-sided, or look at both sides in each engine that is to show the model.", ""},
     {"N806", "data-in-normal-slot", model, error, true, "The image is used as other data, too.",
      "An image of occlusion, roughness or metalness holds no normals. Such images stand in the normal slot if slots "
