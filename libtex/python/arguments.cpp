@@ -6,8 +6,11 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 
 namespace tex::python {
 namespace {
@@ -20,7 +23,15 @@ bool is_real(py::handle given) {
 }  // namespace
 
 void raise_type(std::string_view name, std::string_view wanted, py::handle given) {
-    throw py::type_error(fmt::format("{}: expected {}, got {}", name, wanted, Py_TYPE(given.ptr())->tp_name));
+    const char* const hint = is_source(given) ? ", as read_normals() returns it: (chain, info)" : "";
+    throw py::type_error(fmt::format("{}: expected {}, got {}{}", name, wanted, Py_TYPE(given.ptr())->tp_name, hint));
+}
+
+bool is_source(py::handle given) {
+    if (!py::isinstance<py::tuple>(given) || py::len(given) != 2) return false;
+    const auto pair = py::reinterpret_borrow<py::tuple>(given);
+    return py::isinstance<py::list>(pair[0]) && !py::isinstance<py::list>(pair[1]) &&
+           !py::isinstance<py::array>(pair[1]);
 }
 
 void raise_value(std::string_view name, std::string_view reason) {
@@ -73,6 +84,13 @@ py::list strs_of(const std::vector<std::string>& texts) {
 }
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& names) {
+    // What the commands call an argument, or other tools.
+    constexpr std::pair<std::string_view, std::string_view> kElsewhere[] = {
+        {"format", "encoding"}, {"size", "extent"}, {"strength", "bumpiness"}, {"y_out", "y"}};
+    for (const auto& [word, ours] : kElsewhere) {
+        if (name == word && std::find(names.begin(), names.end(), ours) != names.end())
+            return fmt::format("; did you mean '{}'?", ours);
+    }
     py::list all;
     for (const std::string& each : names) all.append(str_of(each));
     const py::list close = py::module_::import("difflib").attr("get_close_matches")(str_of(name), all, 1);

@@ -38,6 +38,9 @@ bool is_path(py::handle given);
 // A text of libtex as str. Its bytes need not be UTF-8: as Python reads names of files.
 py::str str_of(std::string_view text);
 py::list strs_of(const std::vector<std::string>& texts);
+// Whether it is (chain, info) of read_normals(), which many pass on as if it were the chain.
+[[nodiscard]] bool is_source(py::handle given);
+
 // "; did you mean 'x'?" if one of `names` is like `name`, or empty.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& names);
 // A copy of the text, which is never freed.

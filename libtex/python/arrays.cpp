@@ -307,6 +307,7 @@ NormalMap map_from(py::handle from, std::string_view name, Sharing sharing, Norm
 }
 
 MipChain chain_from(py::handle from, std::string_view name, Sharing sharing) {
+    if (is_source(from)) raise_type(name, "an array, or a list of levels", from);
     if (std::optional<MipChain> chain = chain_of_source(from, false)) return std::move(*chain);
     MipChain chain;
     if (!py::isinstance<py::list>(from) && !py::isinstance<py::tuple>(from)) {
