@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,58 @@ float value_at(const std::vector<float>& steps, float at) {
     return std::clamp(code / static_cast<float>(kStepCodes - 1), 0.0f, 1.0f);
 }
 
+// Most texels of many maps are level, and rounding moved all of them to one step beside the middle: steps of 17 codes
+// have 119 and 136. Smoothing leaves an area of one value where it is, so that the map leans. The step becomes what
+// brings the mean to the middle, within what was rounded to it; values between stay in their order.
+void level_middle(Plane<float>& plane, const std::vector<float>& steps, const Plane<float>& smooth) {
+    constexpr double kMiddle = 0.5, kLeastLevel = 0.25;  // of the texels
+    constexpr float kOnStep = 0.1f;
+    const Extent extent = plane.extent();
+    const auto fraction = [&](int i, int j, int step) {
+        return smooth.at(i, j) / kStepUnit - static_cast<float>(step);
+    };
+    std::vector<std::int64_t> texels(steps.size());
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float at = std::floor(smooth.at(i, j) / kStepUnit + 0.5f);
+            ++texels[std::min(texels.size() - 1, static_cast<std::size_t>(std::max(0.0f, at)))];
+        }
+    }
+    int level = -1;
+    for (int k = 0; k < static_cast<int>(steps.size()); ++k) {
+        const auto from = static_cast<double>(value_at(steps, static_cast<float>(k) - 0.5f)),
+                   to = static_cast<double>(value_at(steps, static_cast<float>(k) + 0.5f));
+        constexpr double kCode = 1.0 / 255.0;
+        if (from > kMiddle + kCode || to < kMiddle - kCode) continue;
+        if (level < 0 || texels[static_cast<std::size_t>(k)] > texels[static_cast<std::size_t>(level)]) level = k;
+    }
+    if (level < 0) return;
+    const float from = value_at(steps, static_cast<float>(level) - 0.5f),
+                to = value_at(steps, static_cast<float>(level) + 0.5f);
+    // A value of the step is a part of its middle, and the rest of the end that it lies towards.
+    double sum = 0.0, parts = 0.0, on_step = 0.0;
+    const auto part_of = [](float f) { return 1.0f - 2.0f * std::abs(f); };
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float f = fraction(i, j, level);
+            const bool is_inside = std::abs(f) < 0.5f;
+            const float part = is_inside ? part_of(f) : 0.0f;
+            parts += static_cast<double>(part);
+            on_step += std::abs(f) < kOnStep ? 1.0 : 0.0;
+            sum += static_cast<double>(is_inside ? (1.0f - part) * (f < 0.0f ? from : to) : plane.at(i, j));
+        }
+    }
+    const auto all = static_cast<double>(extent.texels());
+    if (on_step < kLeastLevel * all) return;
+    const float middle = std::clamp(static_cast<float>((kMiddle * all - sum) / parts), from, to);
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            const float f = fraction(i, j, level);
+            if (std::abs(f) < 0.5f) plane.at(i, j) = part_of(f) * middle + (1.0f - part_of(f)) * (f < 0.0f ? from : to);
+        }
+    }
+}
+
 Result<void> smooth_channel(Plane<float>& plane, const std::vector<float>& steps, const Execution& execution) {
     HeightField field{Plane<float>(plane.extent()), 1.0f, 1.0f, Wrap::clamp, Wrap::clamp};
     for (int j = 0; j < plane.extent().height; ++j) {
@@ -69,6 +122,7 @@ Result<void> smooth_channel(Plane<float>& plane, const std::vector<float>& steps
         for (int i = 0; i < plane.extent().width; ++i)
             plane.at(i, j) = value_at(steps, smooth->height.at(i, j) / kStepUnit);
     }
+    level_middle(plane, steps, smooth->height);
     return {};
 }
 
