@@ -255,15 +255,15 @@ Result<void> RepairNormals::process_file(cli::Job& job) {
     return write(job, std::move(*texture), std::move(*repaired), read);
 }
 
-// glTF demands green up. What the tangents of the model make up for is left alone.
+// glTF demands green up: a warning, as in check_map(), unless --y is given. What the model's tangents cancel is left.
 Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
                                                 const Texture& texture, const Execution& execution) const {
     RepairOptions options = options_for(output.y.value_or(YAxis::up));
+    if (!output.y) options.checks.severity.push_back({"N401", Severity::warning});
     auto repaired = repair(maps.front()->name(), texture, options, execution);
-    const auto turns_green = [](const RepairStep& step) { return is_about_green(*step.rule); };
-    const auto is_left = [](const FaultLeft& fault) { return is_about_green(*fault.finding.rule); };
-    if (!repaired || (std::none_of(repaired->steps.begin(), repaired->steps.end(), turns_green) &&
-                      std::none_of(repaired->left.begin(), repaired->left.end(), is_left)))
+    const auto is_any = [](const auto& list, const auto& of) { return std::any_of(list.begin(), list.end(), of); };
+    if (!repaired || (!is_any(repaired->steps, [](const auto& step) { return is_about_green(*step.rule); }) &&
+                      !is_any(repaired->left, [](const auto& left) { return is_about_green(*left.finding.rule); })))
         return repaired;
     const auto cancels = [](const Finding& finding) { return finding.rule->id == "N707"; };
     const auto model = maps.front()->read(cli::LastModel::Part::all, job.read_options);
@@ -271,7 +271,7 @@ Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector
     for (const MapOfModel& map : maps) {
         const auto report = check_map(**model, *map->map, {options.checks}, job.read_options, execution.quiet());
         if (!report) return report.error();
-        if (std::none_of(report->findings.begin(), report->findings.end(), cancels)) continue;
+        if (!is_any(report->findings, cancels)) continue;
         for (const Rule& rule : tex::rules()) {
             if (is_about_green(rule)) options.skip.emplace_back(rule.id);
         }
