@@ -181,7 +181,7 @@ PictureKind check_behind(const CheckContext& context, Findings& findings) {
     const KindMeasure::Vectors& v = m.as(Reading::as_stored);
     constexpr double kCentred = 0.35, kInvertedShare = 0.9, kDown = -0.6, kUprightShare = 0.25, kRare = 0.1;
     if (m.texels > 0 && share > kInvertedShare && v.off_centre() < kCentred && v.z < kDown) {
-        add_counted(context, findings, "N220", Property::z_behind, " point into the surface");
+        add_counted(context, findings, "N220", Property::z_behind, " point into the surface (z below -0.1)");
     } else if (from_zero) {
         add_share(findings, "N221",
                   percent(m.as(Reading::z_from_zero).unit) +
@@ -189,7 +189,7 @@ PictureKind check_behind(const CheckContext& context, Findings& findings) {
                       " if it is 2 blue - 1",
                   m.as(Reading::z_from_zero).unit);
     } else if (m.texels == 0 || m.upright < kUprightShare || m.inverted > kRare * m.upright) {
-        add_counted(context, findings, "N213", Property::z_behind, " point away from the surface");
+        add_counted(context, findings, "N213", Property::z_behind, " point away from the surface (z below -0.1)");
         // Object-space maps hold unit vectors, although rounded or compressed ones.
         if (context.options.any_length || context.counts.share(Property::off_length) <= kColorShare)
             return PictureKind::object_space;

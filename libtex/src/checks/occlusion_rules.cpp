@@ -24,6 +24,7 @@ constexpr double kFollows = 0.15;       // the least correlation of occlusion th
 constexpr double kFitsMirrored = 0.4;   // of occlusion that is mirrored or inverted,
 constexpr double kMirroredLead = 0.25;  // and how much better it fits than as it is
 constexpr double kLeastSpread = 0.004;  // standard deviation: one code
+constexpr double kTells = 0.03;         // the same of occlusion that must follow: rays find less about flat meshes
 constexpr int kDirections = 8;          // of horizons
 constexpr int kLocal = 2;               // the radius of the mean that local contrast is without
 
@@ -217,7 +218,8 @@ Result<std::optional<OcclusionEvidence>> check_occlusion_rules(const CheckContex
     }
     if (!has_any) return nothing;
     // Where no surface shows, as on most maps of charts, the occlusion may be that of a mesh, or painted.
-    return std::optional(judge(fits, context.y.y.has_value(), findings));
+    const bool tells = correlation_of(given.values, given.values, {}, kTells) > 0.0;
+    return std::optional(judge(fits, tells && context.y.y.has_value(), findings));
 }
 
 }  // namespace tex::inline v1
