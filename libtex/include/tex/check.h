@@ -236,8 +236,10 @@ struct Region {
 };
 
 // How an image editor changes levels: a value c became ((c - black) / (white - black))^(1 / gamma), limited to 0 to 1.
+// Or the lightness of colours was multiplied while hue and saturation stayed (HSL, as of ImageMagick's -modulate).
 struct ToneCurve {
     double black = 0.0, white = 1.0, gamma = 1.0;
+    double lightness = 1.0;  // 1 unless the others are 0, 1, 1
 };
 
 struct Finding {

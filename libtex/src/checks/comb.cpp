@@ -20,7 +20,8 @@ constexpr int kCombRadius = 6;          // of the mean about a code
 constexpr double kLeastCombMean = 8.0;  // texels
 constexpr double kMostRelative = 2.5;   // flat texels alone are no comb
 constexpr int kCombEnds = 3;            // cut off codes gather at the ends
-constexpr double kLeastGaps = 16.0;     // of some thousand curves, chance suits none
+constexpr double kHalf = 0.5, kCut = 1e-6;
+constexpr double kLeastGaps = 16.0;  // of some thousand curves, chance suits none
 constexpr double kLeastCombScore = 0.3, kLeastCombProof = 6.0;
 constexpr double kLeastOpaque = 0.05;  // share of texels
 
@@ -70,10 +71,11 @@ CombCounts means_about(const CombCounts& counts) {
 
 // How many codes become each one. Programs add `half`, a half of a code, or cut off what is behind the point
 // (ImageMagick 6).
-CombCounts shares_of(const ToneCurve& curve, double half) {
+template <class Redo>
+CombCounts shares_of(Redo&& redo, double half) {
     CombCounts shares{};
     for (int code = 0; code < CodeComb::kCodes; ++code)
-        shares[static_cast<std::size_t>(255.0 * redone(curve, code / 255.0) + half)] += 1.0;
+        shares[static_cast<std::size_t>(255.0 * std::clamp(redo(code / 255.0), 0.0, 1.0) + half)] += 1.0;
     const CombCounts means = means_about(shares);
     for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = means[k] > 0.0 ? shares[k] / means[k] : 0.0;
     return shares;
@@ -196,8 +198,17 @@ CombFit CodeComb::fit(const ToneCurve& curve) const {
     if (!values_.empty()) return fit_values(curve);
     const bool is_shift = curve.gamma == 1.0 && std::abs(curve.white - curve.black - 1.0) < 1e-9;
     if (codes_ == 0 || is_shift) return {curve};  // a shift leaves no gaps
-    constexpr double kHalf = 0.5, kCut = 1e-6;
-    const CombCounts rounded = shares_of(curve, kHalf), cut = shares_of(curve, kCut);
+    const auto redo = [&](double c) { return redone(curve, c); };
+    return fit_shares(curve, shares_of(redo, kHalf), shares_of(redo, kCut));
+}
+
+CombFit CodeComb::fit_srgb(bool is_encoded) const {
+    if (codes_ == 0 || !values_.empty()) return {};
+    const auto redo = is_encoded ? srgb_encoded : srgb_decoded;
+    return fit_shares({}, shares_of(redo, kHalf), shares_of(redo, kCut));
+}
+
+CombFit CodeComb::fit_shares(const ToneCurve& curve, const Counts& rounded, const Counts& cut) const {
     return {curve, std::max(correlation(rounded), correlation(cut)), codes_,
             std::max(gap_evidence(rounded), gap_evidence(cut))};
 }
@@ -251,6 +262,12 @@ double CodeComb::share_empty() const {
     return codes_ > 0 ? static_cast<double>(empty) / codes_ : 0.0;
 }
 
+bool CodeComb::is_smooth() const {
+    constexpr int kLeastCodes = 20;
+    constexpr double kMostEmpty = 0.02;
+    return values_.empty() && codes_ >= kLeastCodes && share_empty() <= kMostEmpty;
+}
+
 CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {
     CombFit best;
     if (codes_ == 0) return best;
@@ -286,7 +303,9 @@ std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off) {
         if (!is_identity(k / 100.0)) add({0.0, 1.0, k / 100.0});
         if (k % 5 == 0 && !is_identity(100.0 / k)) add({0.0, 1.0, 100.0 / k});
     }
-    for (int k = 50; k < 98; ++k) add({0.0, 100.0 / k, 1.0});  // darkened
+    for (int k = 50; k <= 150; ++k) {  // darkened, and lightened
+        if (k < 98 || k > 102) add({0.0, 100.0 / k, 1.0});
+    }
     // Brightness shifts all values.
     for (int k = 1; k <= 30; ++k) {
         add({-k / 100.0, 1.0 - k / 100.0, 1.0});
@@ -331,6 +350,7 @@ int roundness(const ToneCurve& curve) {
     if (std::abs(curve.white - curve.black - 1.0) < 1e-9)
         return is_multiple(curve.black, 0.05) ? 0 : is_multiple(curve.black, 0.01) ? 1 : 2;
     if (is_round(0.05)) return is_plain ? 0 : 1;
+    if (curve.black == 0.0 && is_multiple(1.0 / curve.white, 0.05)) return 1;  // a factor
     return is_round(0.01) && is_plain ? 1 : 2;
 }
 

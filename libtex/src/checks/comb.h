@@ -40,13 +40,18 @@ public:
     CodeComb(const Stored& stored, const Background* background);
 
     [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
+    // Of the curve of sRGB, encoding or decoding. The curve of the result means nothing.
+    [[nodiscard]] CombFit fit_srgb(bool is_encoded) const;
     // The share of codes that no texel has although many have those about them: more than a few in a hundred are left
     // by a contrast above 1, whichever it was.
     [[nodiscard]] double share_empty() const;
+    // Whether enough codes are used, next to each other, that any contrast would show.
+    [[nodiscard]] bool is_smooth() const;
     // The best of these.
     [[nodiscard]] CombFit best(const std::vector<ToneCurve>& curves) const;
 
 private:
+    [[nodiscard]] CombFit fit_shares(const ToneCurve& curve, const Counts& rounded, const Counts& cut) const;
     [[nodiscard]] double correlation(const Counts& shares) const;
     [[nodiscard]] double gap_evidence(const Counts& shares) const;
     void collect_values(const Stored& stored, const Background* background, const Plane<float>* alpha);
@@ -65,7 +70,7 @@ private:
 inline constexpr double kUsualMiddle = 0.02;
 
 // Curves with which people change levels, that bring both medians to the middle, or `most_off` from it: gamma in
-// hundredths and their inverses; opacity over black and brightness in percent; levels in percent and in codes of 8
+// hundredths and their inverses; factors and shifts of brightness in percent; levels in percent and in codes of 8
 // bits.
 [[nodiscard]] std::vector<ToneCurve> usual_tones(const Centre& centre, double most_off = kUsualMiddle);
 
@@ -73,7 +78,7 @@ inline constexpr double kUsualMiddle = 0.02;
 [[nodiscard]] std::vector<ToneCurve> even_contrasts();
 
 // How round the numbers of such a curve are: 0 for gamma in tenths and for levels in steps of 5 % at one end or at both
-// alike.
+// alike, 1 for a factor in steps of 5 %. Not for lightness.
 [[nodiscard]] int roundness(const ToneCurve& curve);
 
 }  // namespace tex::inline v1

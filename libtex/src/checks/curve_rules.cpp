@@ -98,29 +98,32 @@ bool check_darkened(const CheckContext& context, const Centre& centre, Findings&
 
 // A change of levels that is neither the curve of sRGB nor a darkening: it moves x and y off the middle, and one curve
 // brings them back and makes vectors unit vectors.
-void check_tone(const CheckContext& context, const Centre& centre, Findings& findings) {
+bool check_tone(const CheckContext& context, const Centre& centre, Findings& findings) {
     if (!context.stored.has_z() || context.kind != Kind::normals || !context.sampled_ok || has_free_lengths(context))
-        return;
+        return false;
     const auto fit = find_tone(context.stored, centre, context.background ? &*context.background : nullptr);
-    if (!fit) return;
+    if (!fit) return false;
     const ToneCurve& curve = fit->curve;
     const bool is_gamma = curve.gamma != 1.0;
     // Nor may it bring them off the middle, apart from what its contrast makes of their distance: a change of x and y
     // alone fits some shift of all three.
     constexpr double kAway = 2.5 / 255.0;
     const Centre without{undone(curve, centre.x), undone(curve, centre.y)};
+    const bool is_lightness = curve.lightness != 1.0;
     const double contrast = is_gamma ? 1.0 : 1.0 / (curve.white - curve.black);
-    if (!fit->is_in_codes && without.distance(0.5) > contrast * centre.distance(0.5) + kAway) return;
-    const std::string what = is_gamma ? "gamma " + decimal(curve.gamma, 2)
-                                      : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
-                                            decimal(100.0 * curve.white, 0) + " %";
-    Finding& finding = findings.add("N314", "vectors are unit vectors if " + what + (is_gamma ? " is" : " are") +
-                                                " taken back (z then differs by " + decimal(fit->error, 1) +
-                                                " codes from what x and y imply, and by " + decimal(fit->as_stored, 1) +
-                                                " as stored); x and y centre on " + decimal(255.0 * centre.x, 0) +
-                                                " and " + decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
-    finding.figure = is_gamma ? curve.gamma : 1.0 / (curve.white - curve.black);
-    finding.unit = is_gamma ? "gamma" : "contrast";
+    if (!fit->is_in_codes && !is_lightness && without.distance(0.5) > contrast * centre.distance(0.5) + kAway)
+        return false;
+    const std::string what = is_lightness ? "a lightness (HSL) of " + decimal(100.0 * curve.lightness, 0) + " % is"
+                             : is_gamma   ? "gamma " + decimal(curve.gamma, 2) + " is"
+                                          : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
+                                              decimal(100.0 * curve.white, 0) + " % are";
+    Finding& finding = findings.add("N314", "vectors are unit vectors if " + what + " taken back (z then differs by " +
+                                                decimal(fit->error, 1) + " codes from what x and y imply, and by " +
+                                                decimal(fit->as_stored, 1) + " as stored); x and y centre on " +
+                                                decimal(255.0 * centre.x, 0) + " and " + decimal(255.0 * centre.y, 0) +
+                                                " of 255 instead of 128");
+    finding.figure = is_lightness ? curve.lightness : is_gamma ? curve.gamma : contrast;
+    finding.unit = is_lightness ? "lightness" : is_gamma ? "gamma" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
     // A change of x and y alone fits no curve of all three by more than some codes.
     // Nor does a change of another kind, as of saturation or of each channel by itself. Rounding alone makes 0.3 codes.
@@ -137,6 +140,7 @@ void check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     }
     if (fit->is_cut) finding.message += "; z was cut off nearly everywhere, and does not confirm these numbers";
     finding.tone = curve;
+    return true;
 }
 
 // Whether a plain power of 2.2, which image editors call gamma 2.2, made the map light, and not the curve of sRGB,
@@ -153,30 +157,70 @@ bool is_plain_power(const CheckContext& context, const Centre& centre) {
     return with_power < kLead * with_srgb;
 }
 
+// What else may have moved the middle nearly as far as the curve of sRGB does: brightness, lightness, levels. z tells.
+// Of 36 maps that went through the curve, those whose z another curve explains better have at most 2.5 codes of error
+// with the curve of sRGB, or at least 0.5 of it with the other one.
+struct OtherTone {
+    bool is_known = false;  // another curve fits so much better that it is the one
+    bool is_likely = true;  // the curve of sRGB is not proved
+};
+
+OtherTone other_tone(const CheckContext& context, const Centre& centre, bool is_light) {
+    constexpr double kLead = 0.4, kAlike = 1.3;
+    constexpr double kNear = 4.0 / 255.0, kLeastError = 0.6, kMostOfNear = 2.5,
+                     kMostOfFar = 4.0;  // errors in codes
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const ToneTexels texels = tone_texels(context.stored, background);
+    const double by_srgb = error_of_srgb(is_light, texels), least = least_tone_error(centre, texels);
+    const bool is_near = centre.distance(is_light ? srgb_encoded(0.5) : srgb_decoded(0.5)) <= kNear;
+    OtherTone other;
+    other.is_known = by_srgb > (is_near ? kMostOfNear : kLeastError) && least < kLead * by_srgb &&
+                     find_tone(context.stored, centre, background);
+    const CodeComb comb(context.stored, background);
+    const CombFit in_codes = comb.fit_srgb(is_light);
+    const bool fits = is_near ? by_srgb <= std::max(kMostOfNear, kAlike * least)
+                              : by_srgb <= std::min(kMostOfFar, kAlike * least) && !comb.is_smooth();
+    other.is_likely = !fits && !in_codes.is_proof();
+    return other;
+}
+
 }  // namespace
 
 void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
     if (context.stored.is_signed || check_darkened(context, centre, findings)) return;
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
-    if (!dark && !light) return check_tone(context, centre, findings);
+    if (!dark && !light) {
+        check_tone(context, centre, findings);
+        return;
+    }
+    bool is_sure = true;
     if (context.stored.has_z()) {
         const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
         const double restored = length_error(context.stored, [&](double c, int, int) {
             return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
         });
-        if (restored >= as_stored) return;
+        if (restored >= as_stored) {
+            check_tone(context, centre, findings);
+            return;
+        }
         // The curve leaves z of 1 where it is, and x and y that vary would have another z: a contrast cut it off.
         const auto z = static_cast<std::size_t>(context.stored.channel(Component::z));
-        if (dark && context.counts.low[z] == 1.0f && restored > kUnitAfterDivision)
-            return check_tone(context, centre, findings);
+        if (dark && context.counts.low[z] == 1.0f && restored > kUnitAfterDivision) {
+            check_tone(context, centre, findings);
+            return;
+        }
+        const OtherTone other = other_tone(context, centre, light);
+        if (other.is_known && check_tone(context, centre, findings)) return;
+        is_sure = !other.is_likely;
     }
     Finding& finding =
         findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
                                                  decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
     finding.figure = (centre.x + centre.y) / 2.0;
     finding.unit = "of full scale";
-    finding.confidence = 0.99;
+    finding.confidence = is_sure ? 0.99 : 0.9;
+    if (!is_sure) finding.message += "; z does not confirm the curve";
     if (light && is_plain_power(context, centre)) {
         finding.message += "; gamma " + decimal(kPlainPower, 1) + " fits better than the curve of sRGB itself";
         finding.tone = ToneCurve{0.0, 1.0, kPlainPower};

@@ -256,16 +256,17 @@ constexpr Rule kTextureRules[] = {
      "its source.",
      "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N209 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
-    {"N314", "levels-changed", damage, error, true, "Gamma, brightness or contrast were changed.",
-     "x and y do not centre on the middle, and one curve for all channels, gamma or levels, brings them back and makes "
-     "z fit x and y. Image editors change levels so, and viewers that write what they show. Flat areas lean then. "
-     "Export the map again without it if you have its source: taking the curve back leaves coarser steps.",
+    {"N314", "levels-changed", damage, error, true, "Gamma, brightness, lightness or contrast were changed.",
+     "x and y do not centre on the middle, and one curve for all channels (gamma, levels, a shift) or the lightness of "
+     "HSL brings them back and makes z fit x and y. Image editors change levels so, and viewers that write what they "
+     "show. Flat areas lean then. Export the map again without it if you have its source: taking the curve back leaves "
+     "coarser steps.",
      "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N209 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N315", "posterised", damage, note, true, "x and y take few values.",
-     "The picture was reduced to few colours: posterised, or stored with 4 or 5 bits a channel. Smooth surfaces show "
-     "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its "
-     "source: smooth values between the steps are a guess.",
+     "The picture was reduced to few colours: posterised, stored with 4 or 5 bits a channel, or with a palette, if it "
+     "has exactly 32, 64, 128 or 256 colours. Smooth surfaces show facets in reflections. Pixel art is meant to be so. "
+     "Export the map again with 8 bits or more if you have its source: smooth values between the steps are a guess.",
      "repair-normals FILE --likely -o FIXED", "N201 N305"},
 
     // -- convention -------------------------------------------------------------------------------------------
@@ -324,7 +325,8 @@ constexpr Rule kTextureRules[] = {
      "It is compared with the occlusion, the heights and the curvature of the surface that the normals show. None "
      "correlates with it by 0.15, or one does only with the mirrored or inverted occlusion. Then it is of another map, "
      "was mirrored without the normals, or 1 is closed in it. Where the direction of green does not show, only "
-     "mirrored and inverted maps are found: occlusion of a mesh or by hand does not follow from normals either.",
+     "mirrored and inverted maps are found, and where occlusion hardly varies: that of a mesh or by hand does not "
+     "follow from normals either.",
      "Make sure that this is the occlusion of these normals. integrate-normals --occlusion-out makes one from them.",
      ""},
 };

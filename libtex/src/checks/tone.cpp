@@ -7,11 +7,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <set>
 #include <vector>
 
 #include "checks/comb.h"
-#include "checks/tone_texels.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -50,6 +48,41 @@ ToneCandidate best_gamma(double middle, const ToneTexels& texels, ZForm form) {
     return best;
 }
 
+// Lightness, which the middle states nearly: flat texels are as light as (c, c, 1), and others go other ways. People
+// choose whole percents, and mostly steps of five.
+ToneCandidate best_lightness(double middle, const ToneTexels& texels) {
+    constexpr int kRange = 6, kStep = 5;  // percents
+    constexpr double kAlike = 1.3, kAlikeCodes = 0.1;
+    const int stated = static_cast<int>(100.0 * (1.0 + middle) / 1.5 + 0.5);
+    std::vector<ToneCandidate> all;
+    for (int percent = stated - kRange; percent <= stated + kRange; ++percent) {
+        const ToneCurve curve{0.0, 1.0, 1.0, percent / 100.0};
+        if (percent != 100) all.push_back({curve, error_of(curve, texels), ZForm::whole});
+    }
+    ToneCandidate best;
+    const auto take_if = [&](auto&& is_one, double most) {
+        for (const ToneCandidate& one : all) {
+            if (!is_one(one) || one.error >= most) continue;
+            most = one.error;
+            best = one;
+        }
+    };
+    take_if([](const ToneCandidate&) { return true; }, 1e9);
+    take_if([](const ToneCandidate& one) { return static_cast<int>(100.0 * one.curve.lightness + 0.5) % kStep == 0; },
+            kAlike * best.error + kAlikeCodes);
+    return best;
+}
+
+// The middle of x or y once a curve is undone. Of lightness, that is not what becomes of the middle.
+double middle_after(const ToneCurve& curve, const Centre& centre, const ToneTexels& texels, std::size_t channel) {
+    if (curve.lightness == 1.0) return undone(curve, channel == 0 ? centre.x : centre.y);
+    std::vector<double> values;
+    for (const ToneTexel& texel : texels) values.push_back(undone(curve, texel)[channel]);
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.empty() ? 0.5 : *middle;
+}
+
 constexpr double kMostLevels = 1.3, kLeastLevels = 0.5, kLevelsStep = 0.01;  // white - black
 
 // A curve that would go on to fit better if it could.
@@ -75,6 +108,23 @@ ToneCandidate best_levels(double middle, double as_stored, const ToneTexels& tex
     }
     const double most = least + 0.01 + 0.002 * as_stored;
     return *std::find_if(all.begin(), all.end(), [most](const ToneCandidate& one) { return one.error <= most; });
+}
+
+// Where z is cut off nearly everywhere, many contrasts explain it. If the histogram denies all of them, what moved the
+// middle was a shift, as of brightness; people choose whole percents.
+std::optional<ToneCandidate> shift_instead(const ToneCandidate& best, double middle, const ToneTexels& texels) {
+    constexpr double kAlike = 0.3, kAlikeCodes = 0.1, kCode = 1.0 / 255.0;
+    const auto shifted = [](double by) { return ToneCurve{-by, 1.0 - by, 1.0}; };
+    const double by = middle - 0.5;
+    const auto rounded = [by](double step) { return step * std::floor(by / step + 0.5); };
+    double chosen = rounded(kCode);
+    if (std::abs(rounded(0.01) - by) <= 0.7 * kCode) chosen = rounded(0.01);
+    if (std::abs(rounded(0.05) - by) <= 1.5 * kCode) chosen = rounded(0.05);
+    const ToneCurve curve = shifted(chosen);
+    if (best.form != ZForm::whole || share_uncut(best.curve, texels) >= kLeastUncut) return std::nullopt;
+    const double error = error_of(curve, texels);
+    if (error > best.error * (1.0 + kAlike) + kAlikeCodes) return std::nullopt;
+    return ToneCandidate{curve, error, ZForm::whole};
 }
 
 // z shows that there was a change, but many curves explain it about as well. The one that the codes speak for, if any;
@@ -112,13 +162,20 @@ ToneCandidate sharpened(const ToneCandidate& best, const CombFit& in_codes, cons
     return chosen;
 }
 
-// The curve and the form of z that fit best, and the error of the best curve of the other family. The usual form is
-// taken unless another fits much better.
+// The curve and the form of z that fit best, and the error of the best curve of another family. The usual form is
+// taken unless another fits much better, and gamma or levels unless lightness does.
 struct BestTone {
-    ToneCandidate gamma, levels;
+    ToneCandidate gamma, levels, lightness;
     [[nodiscard]] bool is_gamma() const { return gamma.error < levels.error; }
-    [[nodiscard]] const ToneCandidate& best() const { return is_gamma() ? gamma : levels; }
-    [[nodiscard]] double other() const { return is_gamma() ? levels.error : gamma.error; }
+    [[nodiscard]] const ToneCandidate& best_of_channels() const { return is_gamma() ? gamma : levels; }
+    [[nodiscard]] bool is_lightness() const {
+        constexpr double kLead = 0.7;
+        return lightness.error < kLead * best_of_channels().error;
+    }
+    [[nodiscard]] const ToneCandidate& best() const { return is_lightness() ? lightness : best_of_channels(); }
+    [[nodiscard]] double other() const {
+        return is_lightness() ? best_of_channels().error : is_gamma() ? levels.error : gamma.error;
+    }
 };
 
 BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels) {
@@ -127,6 +184,7 @@ BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels)
     for (const ZForm form : possible_forms(texels)) {
         BestTone one;
         if (with_gamma) one.gamma = best_gamma(middle, texels, form);
+        if (with_gamma && form == ZForm::whole) one.lightness = best_lightness(middle, texels);
         one.levels = best_levels(middle, error_of({}, texels, form), texels, form);
         const double lead = form == ZForm::from_zero ? kFormLead : 1.0;
         if (lead * one.best().error < chosen.best().error) chosen = one;
@@ -224,13 +282,20 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (as_stored < kLeastToneError) return std::nullopt;
     const ToneCandidate& best = fits.best();
     if (best.error > as_stored / kToneLead || is_at_limit(best.curve)) return std::nullopt;
-    for (const double c : {centre.x, centre.y}) {
-        if (std::abs(undone(best.curve, c) - 0.5) > kMiddleAfter) return std::nullopt;
+    for (const std::size_t c : {std::size_t{0}, std::size_t{1}}) {
+        if (std::abs(middle_after(best.curve, centre, texels, c) - 0.5) > kMiddleAfter) return std::nullopt;
     }
-    const ToneCandidate chosen = sharpened(best, in_codes, usual, texels);
+    if (fits.is_lightness()) return ToneFit{best.curve, as_stored, best.error, fits.other()};
+    const bool leaves_no_gaps = comb.is_smooth() && !in_codes.is_correlated();
+    const auto shift = leaves_no_gaps ? shift_instead(best, middle, texels) : std::nullopt;
+    const ToneCandidate chosen = shift ? *shift : sharpened(best, in_codes, usual, texels);
     if (!shows(chosen.curve, chosen.form)) return std::nullopt;
     const bool is_cut = share_uncut(chosen.curve, texels, chosen.form) < kLeastUncut;
     return ToneFit{chosen.curve, as_stored, chosen.error, fits.other(), false, is_cut};
+}
+
+double least_tone_error(const Centre& centre, const ToneTexels& texels) {
+    return best_of_forms((centre.x + centre.y) / 2.0, true, texels).best().error;
 }
 
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background) {
@@ -321,52 +386,6 @@ std::optional<ChannelTone> find_channel_tone(const Stored& stored, const Centre&
         take({0.0, 1.0, 1.0 / round}, most);
     }
     return found;
-}
-
-int few_colors(const Stored& stored) {
-    constexpr std::size_t kMostColors = 256;
-    const auto& planes = stored.image->planes;
-    if (planes.size() < 3 || stored.extent().texels() < kLeastToneTexels) return 0;
-    std::set<std::array<float, 3>> colors;
-    for (int j = 0; j < stored.extent().height; ++j) {
-        for (int i = 0; i < stored.extent().width; ++i) {
-            colors.insert({planes[0].at(i, j), planes[1].at(i, j), planes[2].at(i, j)});
-            if (colors.size() > kMostColors) return 0;
-        }
-    }
-    return static_cast<int>(colors.size());
-}
-
-int few_levels(const Stored& stored) {
-    constexpr int kLeastDistance = 4, kFewestLevels = 6;
-    int most = 0;
-    for (const Component component : {Component::x, Component::y}) {
-        const Plane<float>& plane = stored.image->planes[static_cast<std::size_t>(stored.channel(component))];
-        std::array<bool, 256> is_used{};
-        // How many values there are, or 0 if two of them lie near to each other.
-        const auto count_levels = [&is_used] {
-            int levels = 0;
-            for (int code = 0, last = -kLeastDistance; code < 256; ++code) {
-                if (!is_used[static_cast<std::size_t>(code)]) continue;
-                if (code - last < kLeastDistance) return 0;
-                last = code;
-                ++levels;
-            }
-            return levels;
-        };
-        int levels = 0;
-        for (int j = 0; j < stored.extent().height; ++j) {
-            for (int i = 0; i < stored.extent().width; ++i) {
-                const float code = 255.0f * std::clamp(plane.at(i, j), 0.0f, 1.0f);
-                is_used[static_cast<std::size_t>(code + 0.5f)] = true;
-            }
-            levels = count_levels();
-            if (levels == 0) return 0;
-        }
-        if (levels < kFewestLevels) return 0;
-        most = std::max(most, levels);
-    }
-    return most;
 }
 
 }  // namespace tex::inline v1

@@ -10,6 +10,7 @@
 #include "checks/background.h"
 #include "checks/centre.h"
 #include "checks/stored.h"
+#include "checks/tone_texels.h"
 
 namespace tex::inline v1 {
 
@@ -18,7 +19,7 @@ namespace tex::inline v1 {
 struct ToneFit {
     ToneCurve curve;
     double as_stored = 0.0, error = 0.0;  // without the curve, and with it
-    double other = 0.0;                   // with the best curve of the other family: levels, or gamma
+    double other = 0.0;                   // with the best curve of another family: levels, gamma, or lightness
     bool is_in_codes = false;             // the histogram of 8 bits shows this curve and no other
     bool is_cut = false;  // z is cut off nearly everywhere: the middle alone shows that there was a curve
 };
@@ -26,6 +27,9 @@ struct ToneFit {
 // The change of levels of all channels that moved x and y off the middle. Nothing if they are there, or if the lengths
 // of vectors do not prove it. Precondition: x, y and z are stored, unsigned.
 std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, const Background* background);
+
+// The error of the curve, of any family, that explains z best.
+double least_tone_error(const Centre& centre, const ToneTexels& texels);
 
 // The contrast that made vectors longer and left the middle where it is: white - black is below 1.
 std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre, const Background* background);
@@ -41,12 +45,5 @@ struct ChannelTone {
     double as_stored = 0.0, error = 0.0;  // as in ToneFit
 };
 std::optional<ChannelTone> find_channel_tone(const Stored& stored, const Centre& centre, const Background* background);
-
-// The number of colours of a picture with a palette, 256 or less; 0 if there are more, or few texels.
-int few_colors(const Stored& stored);
-
-// The number of values that x and y take, at most, if they are codes of 8 bits that lie 4 or more from each other, as
-// after a reduction to few levels; 0 if they do not.
-int few_levels(const Stored& stored);
 
 }  // namespace tex::inline v1

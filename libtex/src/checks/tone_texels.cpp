@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "checks/centre.h"
 #include "checks/lengths.h"
+#include "checks/lightness.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -16,6 +18,22 @@ namespace {
 constexpr std::int64_t kToneTexels = 1 << 14;
 constexpr double kFormLead = 2.0;          // of the error of the usual form over that of another
 constexpr double kInvertedRelated = -0.3;  // a correlation
+
+// `undo` and `redo` change whole texels.
+template <class Undo, class Redo>
+double mean_error(const ToneTexels& texels, ZForm form, Undo&& undo, Redo&& redo) {
+    double sum = 0.0;
+    for (const ToneTexel& texel : texels) {
+        ToneTexel before = undo(texel);
+        const double a = 2.0 * before[0] - 1.0, b = 2.0 * before[1] - 1.0, square = 1.0 - a * a - b * b;
+        before[2] = stored_z(form, std::sqrt(std::max(0.0, square)));
+        const ToneTexel expected = redo(before);
+        double most = 0.0;  // lightness follows from z, and x and y from lightness
+        for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(expected[c] - texel[c]));
+        sum += most + 0.5 * std::max(0.0, -square);
+    }
+    return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
+}
 
 }  // namespace
 
@@ -27,6 +45,16 @@ double undone(const ToneCurve& curve, double c) {
 double redone(const ToneCurve& curve, double c) {
     const double level = std::clamp((c - curve.black) / (curve.white - curve.black), 0.0, 1.0);
     return curve.gamma == 1.0 ? level : math::pow(level, 1.0 / curve.gamma);
+}
+
+ToneTexel undone(const ToneCurve& curve, const ToneTexel& texel) {
+    if (curve.lightness != 1.0) return with_lightness(texel, 1.0 / curve.lightness);
+    return {undone(curve, texel[0]), undone(curve, texel[1]), undone(curve, texel[2])};
+}
+
+ToneTexel redone(const ToneCurve& curve, const ToneTexel& texel) {
+    if (curve.lightness != 1.0) return with_lightness(texel, curve.lightness);
+    return {redone(curve, texel[0]), redone(curve, texel[1]), redone(curve, texel[2])};
 }
 
 ToneTexels tone_texels(const Stored& stored, const Background* background) {
@@ -59,6 +87,11 @@ double stored_z(ZForm form, double root) {
 }
 
 double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
+    if (curve.lightness != 1.0) {
+        return mean_error(
+            texels, form, [&](const ToneTexel& texel) { return undone(curve, texel); },
+            [&](const ToneTexel& texel) { return redone(curve, texel); });
+    }
     double sum = 0.0;
     for (const auto& [x, y, z] : texels) {
         const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
@@ -69,10 +102,22 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
     return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
 }
 
+double error_of_srgb(bool is_encoded, const ToneTexels& texels) {
+    const auto by = [](double (*of)(double)) {
+        return [of](const ToneTexel& texel) { return ToneTexel{of(texel[0]), of(texel[1]), of(texel[2])}; };
+    };
+    return mean_error(texels, ZForm::whole, by(is_encoded ? srgb_decoded : srgb_encoded),
+                      by(is_encoded ? srgb_encoded : srgb_decoded));
+}
+
 double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
     constexpr double kEdge = 1.0 / 255.0;
     std::size_t uncut = 0;
     for (const auto& [x, y, z] : texels) {
+        if (curve.lightness != 1.0) {
+            uncut += z < 1.0 - kEdge ? 1 : 0;
+            continue;
+        }
         const double a = 2.0 * undone(curve, x) - 1.0, b = 2.0 * undone(curve, y) - 1.0;
         const double expected = redone(curve, stored_z(form, std::sqrt(std::max(0.0, 1.0 - a * a - b * b))));
         uncut += expected > kEdge && expected < 1.0 - kEdge ? 1 : 0;

@@ -13,11 +13,14 @@
 
 namespace tex::inline v1 {
 
-// What a value was before levels were changed, and what it becomes.
+// What a value was before levels were changed, and what it becomes. Not for lightness, which takes all channels.
 double undone(const ToneCurve& curve, double c);
 double redone(const ToneCurve& curve, double c);
 
-using ToneTexels = std::vector<std::array<double, 3>>;  // stored x, y and z
+using ToneTexel = std::array<double, 3>;  // stored x, y and z
+using ToneTexels = std::vector<ToneTexel>;
+ToneTexel undone(const ToneCurve& curve, const ToneTexel& texel);
+ToneTexel redone(const ToneCurve& curve, const ToneTexel& texel);
 
 // The values of up to about 2^14 texels. Precondition: x and y are stored, and z or blue.
 ToneTexels tone_texels(const Stored& stored, const Background* background);
@@ -31,6 +34,9 @@ double stored_z(ZForm form, double root);
 // The mean distance, in codes, of z as it is stored from what the curve makes of the z of x and y. Where x and y leave
 // the unit circle, they add how far.
 double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
+
+// The same of the curve of sRGB: of encoding, or of decoding.
+double error_of_srgb(bool is_encoded, const ToneTexels& texels);
 
 // The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
 double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);

@@ -12,6 +12,7 @@
 #include "checks/centre.h"
 #include "checks/comb.h"
 #include "checks/context.h"
+#include "checks/few_values.h"
 #include "checks/tone.h"
 #include "rows/math.h"
 

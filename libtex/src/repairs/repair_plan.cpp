@@ -3,6 +3,7 @@
 #include "repairs/repair_plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -106,8 +107,13 @@ bool has_rule(const CheckReport& report, std::string_view id) {
 }
 
 std::string tone_text(const ToneCurve& tone) {
+    if (tone.lightness != 1.0) return "take lightness " + decimal(100.0 * tone.lightness, 0) + " % (HSL) back";
     if (tone.gamma != 1.0) return "take gamma " + decimal(tone.gamma, 3) + " back";
     if (tone.black == 0.0 && tone.white > 1.0) return "divide by " + decimal(1.0 / tone.white, 3);
+    if (std::abs(tone.white - tone.black - 1.0) < 1e-9) {
+        return std::string(tone.black < 0.0 ? "subtract " : "add ") + decimal(255.0 * std::abs(tone.black), 0) +
+               " of 255";
+    }
     return "take levels from " + decimal(100.0 * tone.black, 1) + " % to " + decimal(100.0 * tone.white, 1) + " % back";
 }
 
@@ -177,11 +183,13 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             }
             if (is_decided) step.certainty = safe;
             break;
+        case encode_srgb:
         case decode_srgb:
-            if (z < 0) break;
-            if (finding.tone) return {{finding.rule, undo_tone, safe, -1, -1, {}, finding.tone}, step};
+            if (finding.confidence < kSurely) step.certainty = likely;
+            if (z < 0 || row.kind == encode_srgb) break;
+            if (finding.tone) return {{finding.rule, undo_tone, step.certainty, -1, -1, {}, finding.tone}, step};
             // Noise, as of texture compression, may hide which of the two it was. The wrong one leaves N314.
-            return {step, {finding.rule, undo_tone, safe, -1, -1, {}, ToneCurve{0.0, 1.0, kPlainPower}}};
+            return {step, {finding.rule, undo_tone, step.certainty, -1, -1, {}, ToneCurve{0.0, 1.0, kPlainPower}}};
         case divide_by_alpha:
             if (format_info(report.format).channels < 4) return {};
             break;

@@ -128,7 +128,21 @@ void undo_tone_row(const LevelTexels& t, const ToneCurve& tone, ZForm form, int 
     }
 }
 
+// Lightness takes all three channels of colours.
+void undo_lightness_row(const LevelTexels& t, const ToneCurve& tone, int j) {
+    float *const x = t.row(t.x, j), *const y = t.row(t.y, j), *const z = t.row(t.z, j);
+    for (int i = 0; i < t.image.extent().width; ++i) {
+        const ToneTexel before = undone(tone, ToneTexel{x[i], y[i], z[i]});
+        x[i] = static_cast<float>(before[0]);
+        y[i] = static_cast<float>(before[1]);
+        z[i] = static_cast<float>(before[2]);
+    }
+}
+
 Result<void> undo_tone_of(const ToneCurve& tone, int channel, StoredLevels& levels, const Execution& execution) {
+    if (tone.lightness != 1.0) {
+        return each_row(levels, execution, [&](const LevelTexels& t, int j) { undo_lightness_row(t, tone, j); });
+    }
     const Stored base = levels.stored(0);
     const ZForm form =
         base.has_z() && !levels.is_signed ? likeliest_form(tone, tone_texels(base, nullptr)) : ZForm::whole;

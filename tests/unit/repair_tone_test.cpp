@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// What else image editors do to colours: brightness that is added, and the lightness of HSL.
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "reference/damage.h"
+#include "unit/repaired_maps.h"
+
+namespace tex::repaired_maps {
+namespace {
+
+unsigned char code_of(double c) {
+    return static_cast<unsigned char>(std::floor(std::clamp(c, 0.0, 1.0) * 255.0 + 0.5));
+}
+
+// Through hue and saturation, as textbooks have it: Foley and others, Computer Graphics, 1990, section 13.3.5.
+Codes with_lightness_of(double by) {
+    Codes codes = clean();
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) {
+            const double r = codes.at(i, j, 0) / 255.0, g = codes.at(i, j, 1) / 255.0, b = codes.at(i, j, 2) / 255.0;
+            const double most = std::max({r, g, b}), least = std::min({r, g, b}), l = 0.5 * (most + least);
+            if (most == least) {
+                for (int c = 0; c < 3; ++c) codes.at(i, j, c) = code_of(by * l);
+                continue;
+            }
+            const double d = most - least, s = l <= 0.5 ? d / (most + least) : d / (2.0 - most - least);
+            double h = 60.0 * (r == most ? (g - b) / d : g == most ? 2.0 + (b - r) / d : 4.0 + (r - g) / d);
+            if (h < 0.0) h += 360.0;
+            const double l2 = by * l, m2 = l2 <= 0.5 ? l2 * (1.0 + s) : l2 + s - l2 * s, m1 = 2.0 * l2 - m2;
+            const auto value = [&](double hue) {
+                hue = hue > 360.0 ? hue - 360.0 : hue < 0.0 ? hue + 360.0 : hue;
+                if (hue < 60.0) return m1 + (m2 - m1) * hue / 60.0;
+                if (hue < 180.0) return m2;
+                return hue < 240.0 ? m1 + (m2 - m1) * (240.0 - hue) / 60.0 : m1;
+            };
+            codes.at(i, j, 0) = code_of(value(h + 120.0));
+            codes.at(i, j, 1) = code_of(value(h));
+            codes.at(i, j, 2) = code_of(value(h - 120.0));
+        }
+    }
+    return codes;
+}
+
+}  // namespace
+
+TEST(Repair, TakesLightnessBack) {
+    const Texture plain = reference::texture_of(clean());
+    for (const auto& [by, plan] : {std::pair{1.2, "N314 take lightness 120 % (HSL) back"},
+                                   std::pair{0.85, "N314 take lightness 85 % (HSL) back"}}) {
+        const Repaired done = repaired(reference::texture_of(with_lightness_of(by)));
+        EXPECT_EQ(plan_of(done), plan);
+        ASSERT_TRUE(done.texture);
+        EXPECT_LT(angle(*done.texture, plain), 0.7) << "what rounding costs: three channels of 8 bits";
+    }
+}
+
+// A shift leaves no gaps in the histogram, cuts z off nearly everywhere, and moves the middle almost as far as the
+// curve of sRGB does.
+TEST(Repair, SubtractsABrightnessThatWasAdded) {
+    Codes light = clean();
+    for (unsigned char& code : light.values) code = static_cast<unsigned char>(std::min(255, code + 51));
+    const Texture texture = reference::texture_of(light);
+    EXPECT_FALSE(repaired(texture).texture) << "z proves nothing";
+    RepairOptions options;
+    options.likely = true;
+    const Repaired done = repaired(texture, options);
+    EXPECT_EQ(plan_of(done).substr(0, 27), "N314 subtract 51 of 255");
+    ASSERT_TRUE(done.texture);
+    EXPECT_LT(angle(*done.texture, reference::texture_of(clean())), 1.0) << "where x or y was cut off, nothing is left";
+    Codes dark = clean();
+    for (unsigned char& code : dark.values) code = static_cast<unsigned char>(std::max(0, code - 51));
+    EXPECT_EQ(plan_of(repaired(reference::texture_of(dark), options)).substr(0, 18), "N314 add 51 of 255");
+}
+
+// Sixteen values have none in the middle, so that all that is level leans to one side.
+TEST(Repair, LevelGroundIsLevelAgainAfterFewValues) {
+    Codes codes = clean();
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) {
+            const bool is_level = (i / 96 + j / 96) % 2 == 0;
+            for (int c = 0; is_level && c < 3; ++c) codes.at(i, j, c) = c == 2 ? 255 : 128;
+        }
+    }
+    const Texture plain = reference::texture_of(codes);
+    for (unsigned char& code : codes.values)
+        code = static_cast<unsigned char>(17.0 * std::floor(std::min(15.0, code / 16.0)));
+    RepairOptions options;
+    options.likely = true;
+    const Repaired done = repaired(reference::texture_of(codes), options);
+    EXPECT_EQ(plan_of(done).substr(0, 4), "N315");
+    ASSERT_TRUE(done.texture);
+    const auto map = unpack(*done.texture);
+    double lean = 0.0;
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i)
+            lean += static_cast<double>(map->levels.front().x.at(i, j)) / static_cast<double>(codes.extent.texels());
+    }
+    EXPECT_LT(std::abs(lean), 0.01) << "a step is 0.13";
+    EXPECT_LT(angle(*done.texture, plain), 0.6 * angle(reference::texture_of(codes), plain));
+}
+
+}  // namespace tex::repaired_maps
