@@ -317,6 +317,11 @@ TEST_F(ModelOutputs, RepairsChangeDamagedMapsAlone) {
     write_model_of("m.gltf", {"maps/light.png", "maps/pink.png"});
     refuses("repair-normals m.gltf -o a.gltf", 1, "");
     does("repair-normals m.gltf --material m0 -o a.gltf");
+    // Heights in place of normals.
+    does("convert maps/up.png -channel R -separate maps/heights.png");
+    write_model_of("h.gltf", {"maps/heights.png"});
+    EXPECT_NE(go("check-normals h.gltf").out.find("repair-normals h.gltf --bumpiness B"), std::string::npos);
+    does("repair-normals h.gltf --bumpiness 4 -o baked.gltf; check-normals baked.gltf");
 }
 
 TEST_F(ModelOutputs, RepairsLeaveWhatTangentsMakeUpFor) {

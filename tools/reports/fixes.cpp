@@ -264,6 +264,12 @@ Fix model_fix(const Finding& finding, const CheckReport& report, const Requireme
     const auto target = target_of(id, report, require);
     const bool is_written = !type.empty() && target && command_of(*finding.rule, report).program == "pack-normals" &&
                             !is_red_mirrored(id, report) && id != "N108";
+    if (id == "N210" && !type.empty()) {
+        return {
+            fmt::format("If these are heights, repair-normals {} --bumpiness B -o FIXED{} bakes normals of them, which "
+                        "are B texels high where white is. Else put the normal map into its place.",
+                        shell_file(report.file), type)};
+    }
     if (!is_written) return {"Correct the image in the program that made it, and put it into the model again."};
     FixCommand command;
     for (const Finding* each : fixed_together(finding, report, require)) {
