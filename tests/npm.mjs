@@ -11,7 +11,7 @@ import { join, resolve } from 'node:path';
 import { Worker } from 'node:worker_threads';
 
 const [folder, commands, samples, sets] = process.argv.slice(2);
-const tex = await import(join(resolve(folder), 'index.js'));
+const tex = await import(join(resolve(folder), 'node.js'));
 const scratch = mkdtempSync(join(tmpdir(), 'tex-npm'));
 let passed = 0;
 let failed = 0;
@@ -183,7 +183,7 @@ test('memory is given back', () => {
   if (grown > 150) throw new Error(`${grown} MB more after 60 calls`);
 });
 await new Promise((done) => {
-  const code = `import(${JSON.stringify(join(resolve(folder), 'index.js'))}).then(({ bake }) =>
+  const code = `import(${JSON.stringify(join(resolve(folder), 'node.js'))}).then(({ bake }) =>
     require('node:worker_threads').parentPort.postMessage(bake(${JSON.stringify({ ...wave, data: null })}
       .width ? { width: 2, height: 2, data: new Float32Array(4) } : null).data.length))`;
   const worker = new Worker(code, { eval: true });

@@ -34,7 +34,7 @@ using MapOfModel = std::shared_ptr<const cli::ModelInput>;
 
 bool is_about_green(const Rule& rule) { return rule.family == RuleFamily::convention || rule.id == "N112"; }
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 40;  // of an input
+constexpr std::size_t kMostBytes = static_cast<std::size_t>(-1) / 2;  // of an input
 
 class RepairNormals : public cli::Converter {
 public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// index.js: libtex in JavaScript, over tex.wasm beside it. One ES module for node, browsers and workers.
+// index.js: libtex in JavaScript, over tex.wasm beside it. One ES module for browsers, workers and, through node.js, node.
 //
 // A call goes to WebAssembly as JSON; typed arrays in it are copied to its memory, those of the answer out of it, and
 // both are freed before the verb returns. Nothing of the caller's is kept.
@@ -48,12 +48,8 @@ let compiled;
 let running; // the instance; another one takes its place if it has failed
 
 async function compile(source) {
-  const url = new URL('./tex.wasm', import.meta.url);
   if (source !== undefined) return source instanceof WebAssembly.Module ? source : WebAssembly.compile(await source);
-  if (url.protocol === 'file:' && typeof process !== 'undefined') {
-    const { readFile } = await import(/* @vite-ignore */ 'node:fs/promises');
-    return WebAssembly.compile(await readFile(url));
-  }
+  const url = new URL('./tex.wasm', import.meta.url); // written so that bundlers find it
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
   return WebAssembly.compile(await response.arrayBuffer());
@@ -160,5 +156,3 @@ export const version = () => call('version', {});
 
 /** For npm.sh: the options of all verbs as TypeScript. */
 export const declarations = () => call('declarations', {});
-
-if (typeof process !== 'undefined' && process.versions?.node) await ready();

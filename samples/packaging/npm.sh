@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# npm.sh: makes build/npm/libtex-VERSION.tgz, the npm package of the JavaScript module: WebAssembly, for node 20 and
-# later, on every system, without a native part or an install script. `npm publish` takes it as it is.
+# npm.sh: makes build/npm/libtex-VERSION.tgz, the npm package of the commands and of the JavaScript module: WebAssembly,
+# for node 20 and later, on every system, without a native part or an install script. `npm publish` takes it as it is.
 #
 #     samples/packaging/npm.sh
 #
@@ -19,7 +19,8 @@ mirror=${MIRROR:-http://deb.debian.org/debian}
 toolchain=$PWD/samples/packaging/npm/toolchain.cmake
 tool=
 export TEX_PREFIX=$prefix
-need_packages "${wasm_packages[@]}" cmake ninja-build pkg-config dpkg-dev xz-utils nlohmann-json3-dev python3
+need_packages "${wasm_packages[@]}" cmake ninja-build pkg-config dpkg-dev xz-utils nlohmann-json3-dev libfmt-dev \
+    libtomlplusplus-dev python3
 if ! command -v node >/dev/null || [ "$(node -p 'parseInt(process.versions.node)')" -lt 20 ]; then
     echo "$0: needs node 20 or later" >&2
     exit 1
@@ -44,11 +45,14 @@ build_libtex() {
 fill_package() {
     rm -rf "$stage"
     mkdir -p "$stage"
-    cp "$wasm/libtex/web/tex.wasm" libtex/web/index.js libtex/web/README.md LICENSE CHANGELOG.md "$stage"
-    sed "s/@VERSION@/$version/" libtex/web/package.json.in >"$stage/package.json"
+    cp "$wasm/libtex/web/tex.wasm" libtex/web/*.js libtex/web/*.d.ts libtex/web/README.md LICENSE CHANGELOG.md "$stage"
+    cp "$wasm/tools/web/commands.wasm" tools/web/*.js "$stage"
+    local commands
+    commands=$(printf '%s\n' tools/*-normals.cpp | sed 's|tools/\(.*\)[.]cpp|"\1"|' | paste -sd,)
+    sed "s/@VERSION@/$version/; s/@COMMANDS@/${commands//,/, }/" libtex/web/package.json.in >"$stage/package.json"
     node --input-type=module -e '
         import { readFileSync, writeFileSync } from "node:fs";
-        const { declarations } = await import(process.argv[1] + "/index.js");
+        const { declarations } = await import(process.argv[1] + "/node.js");
         const text = readFileSync("libtex/web/index.d.ts.in", "utf8");
         writeFileSync(process.argv[1] + "/index.d.ts", text.replace("@OPTIONS@\n", declarations()));' "$stage"
     python3 samples/packaging/portable/inventory.py --system wasm32 --version "$version" --sources "$work/sources" \

@@ -8,7 +8,7 @@ import { join, resolve } from 'node:path';
 
 const [folder] = process.argv.slice(2);
 const start = process.hrtime.bigint();
-const tex = await import(join(resolve(folder), 'index.js'));
+const tex = await import(join(resolve(folder), 'node.js'));
 console.log(`import and compile: ${Number(process.hrtime.bigint() - start) / 1e6} ms`);
 
 const side = 1024;

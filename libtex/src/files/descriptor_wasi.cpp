@@ -31,7 +31,8 @@ void Descriptor::reset() {
 
 std::optional<FileStatus> FileStatus::of(const std::string& path) {
     struct stat status {};
-    if (stat(path.c_str(), &status) != 0) return std::nullopt;
+    if (path.empty()) errno = ENOENT;  // wasi-libc takes it for the working directory
+    if (path.empty() || stat(path.c_str(), &status) != 0) return std::nullopt;
     return status_from(status);
 }
 
@@ -51,9 +52,16 @@ Descriptor open_for_reading(const std::string& path) {
     return path == "-" ? Descriptor(kStandardInput) : Descriptor(::open(path.c_str(), O_RDONLY));
 }
 
-// There is no folder for temporary files, nor a file that is gone when it is closed.
-Descriptor temporary_file(const std::string&) {
+// There is no folder for temporary files.
+Descriptor temporary_file(const std::string& folder) {
+    constexpr int kMostWriters = 4096;
     errno = ENOTSUP;
+    for (int k = 0; k < kMostWriters && !folder.empty(); ++k) {
+        const std::string name = folder + "/.libtex.tex-tmp" + std::to_string(k);
+        Descriptor file(::open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600));
+        if (file) unlink(name.c_str());
+        if (file || errno != EEXIST) return file;
+    }
     return Descriptor();
 }
 

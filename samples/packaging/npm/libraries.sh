@@ -6,7 +6,7 @@
 
 # shellcheck source=samples/packaging/portable/libraries.sh
 . samples/packaging/portable/libraries.sh
-# JSON is headers.
+# JSON, TOML and fmt are headers.
 sources=(imath openexr libisal highway libpng1.6 libdeflate libzstd zlib)
 bare_sources=()
 lgpl_sources=()
@@ -72,7 +72,7 @@ with_cxx() {
         -I"$root/libunwind/include" -I"$root/libunwind/src" -D_LIBCPP_BUILDING_LIBRARY \
         -DLIBCXX_BUILDING_LIBCXXABI -D_LIBCXXABI_BUILDING_LIBRARY \
         -D_LIBCXXABI_HAS_NO_THREADS -D_LIBUNWIND_HAS_NO_THREADS -D_LIBUNWIND_HIDE_SYMBOLS -DNDEBUG -w -- \
-        "${sources[@]}" "$root/libunwind/src/Unwind-wasm.c" "$here/setjmp.c"
+        "${sources[@]}" "$root/libunwind/src/Unwind-wasm.c" "$here/setjmp.c" "$here/realpath.c"
     cp "$prefix/lib/libc++.a" "$prefix/lib/libc++abi.a"  # clang names both
 }
 
@@ -107,6 +107,8 @@ with_c_libraries() {
         "$root"/lib/{deflate_decompress,utils,zlib_compress,zlib_decompress}.c
     pkgconfig libdeflate 1.14 deflate
     root=$(source_of libzstd)
+    # The way in which it looks for matches, and so its bytes, must be those of processors with vectors.
+    sed -i 's/kHasSIMD128 = 0/kHasSIMD128 = 1/' "$root/lib/compress/zstd_compress.c"
     cp "$root/lib/zstd.h" "$root/lib/zstd_errors.h" "$prefix/include"
     compile_all libzstd libzstd.a -DZSTD_DISABLE_ASM -DZSTD_LEGACY_SUPPORT=0 -w -- "$root"/lib/common/*.c \
         "$root"/lib/compress/*.c "$root"/lib/decompress/*.c
@@ -117,6 +119,10 @@ build_wasm_libraries() {
     mkdir -p "$work/build" "$prefix/lib/pkgconfig" "$prefix/include" "$prefix/share/cmake"
     cp -rp /usr/include/nlohmann "$prefix/include"
     cp -rp /usr/share/cmake/nlohmann_json "$prefix/share/cmake"
+    cp -rp /usr/include/fmt /usr/include/toml++ "$prefix/include"
+    mkdir -p "$prefix/lib/cmake/fmt"
+    printf '%s\n' 'add_library(fmt::fmt INTERFACE IMPORTED)' \
+        'target_compile_definitions(fmt::fmt INTERFACE FMT_HEADER_ONLY)' >"$prefix/lib/cmake/fmt/fmtConfig.cmake"
     with_cxx
     mkdir -p "$prefix/lib/cmake/TBB" # whose place headers in one_thread take
     printf 'add_library(TBB::tbb INTERFACE IMPORTED)\n' >"$prefix/lib/cmake/TBB/TBBConfig.cmake"

@@ -67,6 +67,8 @@ WASM = {name: PARTS[name]._replace(package="") for name in
         ("libpng1.6", "zlib", "libdeflate", "libzstd", "imath", "openexr", "libisal", "highway")}
 WASM |= {
     "nlohmann-json3": PARTS["nlohmann-json3"],
+    "tomlplusplus": PARTS["tomlplusplus"],
+    "fmtlib": Part("MIT", "", "libfmt-dev"),
     "llvm-toolchain-19": Part("Apache-2.0 WITH LLVM-exception", "c++ c++abi clang_rt.builtins-wasm32",
                               "libclang-rt-19-dev-wasm32"),
     "wasi-libc": Part("Apache-2.0 WITH LLVM-exception AND MIT AND BSD-2-Clause AND CC0-1.0",

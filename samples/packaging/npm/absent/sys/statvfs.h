@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// statvfs.h: what libc++'s std::filesystem uses, and WASI does not have: how much room is left, modes, and names
-// without symbolic links. All of them fail.
+// statvfs.h: what libc++'s std::filesystem uses, and WASI does not have: how much room is left, and modes. These fail.
+// Names without symbolic links come from realpath.c.
 
 #ifndef TEX_STATVFS
 #define TEX_STATVFS
@@ -20,7 +20,7 @@ inline int absent_from_wasi() {
 inline int statvfs(const char*, struct statvfs*) { return absent_from_wasi(); }
 inline int fchmod(int, mode_t) { return absent_from_wasi(); }
 inline int fchmodat(int, const char*, mode_t, int) { return absent_from_wasi(); }
-inline char* realpath(const char*, char*) { return absent_from_wasi(), nullptr; }
+extern "C" char* realpath(const char*, char*);
 
 #define DT_SOCK 255  // no file is one
 

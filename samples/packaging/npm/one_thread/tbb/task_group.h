@@ -41,4 +41,11 @@ public:
     }
 };
 
+template <class Index, class Body>
+void parallel_for(Index first, Index last, const Body& body) {
+    for (Index k = first; k < last; ++k) body(k);
+}
+
 }  // namespace tbb
+
+inline const char* TBB_runtime_version() { return "none: one thread"; }

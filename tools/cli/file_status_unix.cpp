@@ -41,7 +41,9 @@ int close_file(std::FILE* file) { return file == nullptr ? 0 : std::fclose(file)
 
 std::optional<FileStatus> status_of(const std::string& path) {
     struct stat status {};
-    if (stat(path.c_str(), &status) != 0) return std::nullopt;
+    // In wasi-libc, an empty path is the working directory.
+    if (path.empty()) errno = ENOENT;
+    if (path.empty() || stat(path.c_str(), &status) != 0) return std::nullopt;
     return status_from(status);
 }
 
@@ -88,7 +90,7 @@ std::optional<std::size_t> read_from(std::FILE* file, void* to, std::size_t coun
 std::FILE* standard_input() { return stdin; }
 
 bool set_mtime(const std::string& path, std::int64_t mtime) {
-    const timespec times[] = {{0, UTIME_OMIT}, {mtime / kSecond, mtime % kSecond}};
+    const timespec times[] = {{0, UTIME_OMIT}, {mtime / kSecond, static_cast<long>(mtime % kSecond)}};
     return utimensat(AT_FDCWD, path.c_str(), times, 0) == 0;
 }
 
@@ -100,7 +102,13 @@ std::error_code create_folders(const std::string& folder) {
 
 bool remove_file(const std::string& path) { return std::remove(path.c_str()) == 0; }
 
-std::int64_t physical_memory() { return static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE); }
+std::int64_t physical_memory() {
+#ifdef __wasi__
+    return std::int64_t{4} << 30;  // all that a module can have
+#else
+    return static_cast<std::int64_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+#endif
+}
 
 std::string key_of_name(const std::string& name) { return name; }
 
