@@ -219,9 +219,14 @@ windows() {
     samples/packaging/windows.sh && counted windows tests/windows.sh
 }
 
-# The npm package, in node.
+# The npm package, in node and in a browser, and the page that runs the commands there.
 npm_package() {
-    samples/packaging/npm.sh && counted npm tests/npm.sh
+    local status=0
+    samples/packaging/npm.sh || return 1
+    counted npm tests/npm.sh 500 --cli || status=1
+    counted npm_browser tests/browser/npm.sh || status=1
+    counted web tests/browser/web.sh || status=1
+    return "$status"
 }
 
 # Everything that a release consists of, made from two clones in folders with names of different lengths: an hour. The
