@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of transfer-normals --report, and the copies of large meshes in it.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,10 @@
 
 namespace tex::cli {
 namespace {
+
+MeshPart page_mesh(const std::vector<MeshPart>& parts, std::size_t most) {
+    return cli::page_mesh([&](const VisitPart& visit) { std::for_each(parts.begin(), parts.end(), visit); }, most);
+}
 
 class TransferPage : public TransferTest {
 protected:

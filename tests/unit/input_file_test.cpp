@@ -17,6 +17,12 @@
 namespace tex {
 namespace {
 
+Result<std::vector<std::byte>> read_whole_file(const std::string& path) {
+    Result<InputFile> file = InputFile::open(path);
+    if (!file) return file.error();
+    return file->read_rest(1 << 20);
+}
+
 class InputFileTest : public testing::Test, protected Scratch {
 protected:
     static std::string text(const std::vector<std::byte>& bytes) {

@@ -51,8 +51,6 @@ Point normal_at(const MeshPart& part, std::size_t triangle, std::size_t corner) 
     return unit_of(point_of(part.normals[part.indices[3 * triangle + corner]]));
 }
 
-using VisitAll = std::function<void(const VisitPart&)>;
-
 MeshPart joined_parts(const VisitAll& visit_all) {
     MeshPart all;
     visit_all([&all](const MeshPart& part) {
@@ -203,11 +201,7 @@ MeshPart with_uvs(MeshPart part) {
 
 }  // namespace
 
-MeshPart page_mesh(const std::vector<MeshPart>& parts, std::size_t most) {
-    return page_mesh_of([&](const VisitPart& visit) { std::for_each(parts.begin(), parts.end(), visit); }, most);
-}
-
-MeshPart page_mesh_of(const VisitAll& visit_all, std::size_t most) {
+MeshPart page_mesh(const VisitAll& visit_all, std::size_t most) {
     const Bounds bounds(visit_all);
     if (bounds.triangles <= most) return with_uvs(joined_parts(visit_all));
     // A surface crosses about area / cell^2 cells, and has about two triangles in each.

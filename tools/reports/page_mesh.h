@@ -11,6 +11,10 @@
 
 namespace tex::cli {
 
+// Takes parts that are visited one by one, several times, always in the same order.
+using VisitPart = std::function<void(const MeshPart&)>;
+using VisitAll = std::function<void(const VisitPart&)>;
+
 // All parts as one, with normals (those of the triangles where a part has none) and, for preview(), a set of UVs, which
 // are all 0. If there are more triangles than `most`, vertices in the same cell of a grid become one, at their mean
 // place, and triangles that lose a corner go (Rossignac and Borrel, Multi-resolution 3D approximations for rendering
@@ -18,10 +22,6 @@ namespace tex::cli {
 // both sides of a sheet stay apart. The grid has at most 256 cells in each direction, and as many as keep to `most`.
 //
 // Preconditions: every part passes check_part(); there is a part; most >= 1.
-[[nodiscard]] MeshPart page_mesh(const std::vector<MeshPart>& parts, std::size_t most);
-
-// Takes parts that are visited one by one, several times, always in the same order.
-using VisitPart = std::function<void(const MeshPart&)>;
-[[nodiscard]] MeshPart page_mesh_of(const std::function<void(const VisitPart&)>& visit_all, std::size_t most);
+[[nodiscard]] MeshPart page_mesh(const VisitAll& visit_all, std::size_t most);
 
 }  // namespace tex::cli

@@ -122,7 +122,7 @@ Result<HtmlBeside> TransferReport::beside(const Entry& entry, const HtmlSizes& s
                                           const Execution& execution) const {
     const std::size_t triangles = entry.high.triangles(), most = std::max<std::size_t>(1000, kPageTriangles / maps_);
     const auto visit_high = [&](const VisitPart& visit) { entry.high.visit_standing(visit); };
-    const MeshPart part = page_mesh_of(visit_high, most);
+    const MeshPart part = page_mesh(visit_high, most);
     const std::vector<Float4> tangents(part.indices.size(), Float4{1.0f, 0.0f, 0.0f, 1.0f});
     auto still = still_of(part, tangents, sizes.lit, "the high mesh", execution);
     if (!still) return still.error();

@@ -70,17 +70,6 @@ std::optional<AstcMode> astc_mode(unsigned bits, Extent block) {
     return mode;
 }
 
-std::optional<unsigned> astc_mode_bits(const AstcMode& mode, Extent block) {
-    for (unsigned bits = 0; bits < 1u << kAstcModeBits; ++bits) {
-        if ((bits & 0x1ff) == kAstcVoid) continue;
-        const std::optional<AstcMode> other = astc_mode(bits, block);
-        if (other && other->grid.width == mode.grid.width && other->grid.height == mode.grid.height &&
-            other->planes == mode.planes && other->range == mode.range)
-            return bits;
-    }
-    return std::nullopt;
-}
-
 void astc_partitions(Extent block, int count, unsigned index, std::uint8_t* of_texels) {
     const bool is_small = block.width * block.height < 31;
     const unsigned seed = index + 1024u * static_cast<unsigned>(count - 1);

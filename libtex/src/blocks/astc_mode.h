@@ -34,9 +34,6 @@ struct AstcMode {
 // The mode that these 11 bits mean for blocks of this size, if it is valid. Not for kAstcVoid.
 [[nodiscard]] std::optional<AstcMode> astc_mode(unsigned bits, Extent block);
 
-// The least 11 bits that mean this mode, if there are any.
-[[nodiscard]] std::optional<unsigned> astc_mode_bits(const AstcMode& mode, Extent block);
-
 // Where one texel stands between the weights of a grid, along one axis.
 struct AstcInfill {
     int first;  // the weight before it

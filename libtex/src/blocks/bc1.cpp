@@ -2,9 +2,7 @@
 
 #include "blocks/bc1.h"
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 namespace tex::inline v1 {
 namespace {
@@ -72,49 +70,16 @@ void make_palette(GreenEndpoints e, std::int64_t palette[4]) {
     palette[3] = (high + 2 * low) * kCodeUnit;
 }
 
-// The error, or any number above `limit` if the error is greater than `limit`.
-std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, GreenEndpoints endpoints) {
-    std::int64_t palette[4];
-    make_palette(endpoints, palette);
-    std::int64_t sum = 0;
-    for (int k = 0; k < 16 && sum <= limit; ++k) {
-        if (texels.mask >> k & 1) sum += nearest(palette, std::int64_t{3} * texels.values[k]).squared;
-    }
-    return sum;
-}
-
 }  // namespace
 
 std::int64_t green_error(const BlockTexels& texels, GreenEndpoints endpoints) {
-    return error_up_to(std::numeric_limits<std::int64_t>::max(), texels, endpoints);
-}
-
-GreenEndpoints search_green(const BlockTexels& texels, int reach) {
-    std::int32_t least = std::numeric_limits<std::int32_t>::max();
-    std::int32_t greatest = 0;
+    std::int64_t palette[4];
+    make_palette(endpoints, palette);
+    std::int64_t sum = 0;
     for (int k = 0; k < 16; ++k) {
-        if (!(texels.mask >> k & 1)) continue;
-        least = std::min(least, texels.values[k]);
-        greatest = std::max(greatest, texels.values[k]);
+        if (texels.mask >> k & 1) sum += nearest(palette, std::int64_t{3} * texels.values[k]).squared;
     }
-    // The 6-bit code below the least value and the one above the greatest.
-    const int low = std::max(0, least / kCodeUnit * 63 / 255 - 1);
-    const int high = std::min(63, greatest / kCodeUnit * 63 / 255 + 1);
-    GreenEndpoints best;
-    std::int64_t least_error = std::numeric_limits<std::int64_t>::max();
-    for (int distance = 0; distance < 64; ++distance) {
-        const int first = std::max({0, low - reach, high - reach - distance});
-        const int last = std::min({63 - distance, low + reach, high + reach - distance});
-        for (int lower = last; lower >= first; --lower) {
-            const GreenEndpoints e{lower, lower + distance};
-            const std::int64_t error = error_up_to(least_error, texels, e);
-            if (error < least_error) {
-                best = e;
-                least_error = error;
-            }
-        }
-    }
-    return best;
+    return sum;
 }
 
 void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte* block) {

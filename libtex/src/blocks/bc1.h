@@ -50,12 +50,6 @@ constexpr int widen_green(int code) { return code << 2 | code >> 4; }
 inline constexpr std::int64_t kGreenErrorUnit = std::int64_t{3} * kCodeUnit;
 [[nodiscard]] std::int64_t green_error(const BlockTexels& texels, GreenEndpoints endpoints);
 
-// The endpoints with the least squared error among all pairs whose lower endpoint is within `reach` 6-bit codes of the
-// least value and whose greater one is within `reach` of the greatest; for reach = 63 these are all pairs. Of pairs
-// with equal errors, the one whose endpoints are nearest to each other is taken, then the greatest: flat, 127.5, takes
-// 31 and 33, whose mean with weights 2:1 is 128 under every vendor's rounding.
-[[nodiscard]] GreenEndpoints search_green(const BlockTexels& texels, int reach);
-
 // Writes the colour block. Each texel takes the nearest value, or the first of equally near ones. Equal endpoints use
 // index 0 only.
 void write_green(const BlockTexels& texels, GreenEndpoints endpoints, std::byte* block);

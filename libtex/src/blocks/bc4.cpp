@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 namespace tex::inline v1 {
 namespace {
@@ -64,52 +63,16 @@ void make_palette(Bc4Codes codes, Bc4Endpoints e, std::int64_t palette[8]) {
     }
 }
 
-// The error, or any number above `limit` if the error is greater than `limit`.
-std::int64_t error_up_to(std::int64_t limit, const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints) {
-    std::int64_t palette[8];
-    make_palette(codes, endpoints, palette);
-    std::int64_t sum = 0;
-    for (int k = 0; k < 16 && sum <= limit; ++k) {
-        if (texels.mask >> k & 1) sum += nearest(palette, texels.values[k] * (kBc4ErrorUnit / kCodeUnit)).squared;
-    }
-    return sum;
-}
-
 }  // namespace
 
 std::int64_t bc4_error(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints) {
-    return error_up_to(std::numeric_limits<std::int64_t>::max(), texels, codes, endpoints);
-}
-
-Bc4Endpoints search_bc4(const BlockTexels& texels, Bc4Codes codes, int reach) {
-    std::int32_t least = std::numeric_limits<std::int32_t>::max();
-    std::int32_t greatest = 0;
+    std::int64_t palette[8];
+    make_palette(codes, endpoints, palette);
+    std::int64_t sum = 0;
     for (int k = 0; k < 16; ++k) {
-        if (!(texels.mask >> k & 1)) continue;
-        least = std::min(least, texels.values[k]);
-        greatest = std::max(greatest, texels.values[k]);
+        if (texels.mask >> k & 1) sum += nearest(palette, texels.values[k] * (kBc4ErrorUnit / kCodeUnit)).squared;
     }
-    const int low = least / kCodeUnit;
-    const int high = (greatest + kCodeUnit - 1) / kCodeUnit;
-    Bc4Endpoints best;
-    std::int64_t least_error = std::numeric_limits<std::int64_t>::max();
-    for (int distance = 0; distance <= codes.top; ++distance) {
-        for (const bool eight_values : {true, false}) {
-            if (eight_values && distance == 0) continue;
-            const int first = std::max({0, low - reach, high - reach - distance});
-            const int last = std::min({codes.top - distance, low + reach, high + reach - distance});
-            for (int lower = last; lower >= first; --lower) {
-                const Bc4Endpoints e =
-                    eight_values ? Bc4Endpoints{lower + distance, lower} : Bc4Endpoints{lower, lower + distance};
-                const std::int64_t error = error_up_to(least_error, texels, codes, e);
-                if (error < least_error) {
-                    best = e;
-                    least_error = error;
-                }
-            }
-        }
-    }
-    return best;
+    return sum;
 }
 
 void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints, std::byte* block) {

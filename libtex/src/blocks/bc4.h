@@ -46,12 +46,6 @@ struct Bc4Endpoints {
 inline constexpr std::int64_t kBc4ErrorUnit = std::int64_t{35} * kCodeUnit;
 [[nodiscard]] std::int64_t bc4_error(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints);
 
-// The endpoints with the least squared error, with 8 and with 6 values, among all pairs whose lower endpoint is within
-// `reach` codes of the least value and whose greater one is within `reach` codes of the greatest; for reach = codes.top
-// these are all pairs. Of pairs with equal errors, the one whose endpoints are nearest to each other is taken, then one
-// with 8 values, then the greatest.
-[[nodiscard]] Bc4Endpoints search_bc4(const BlockTexels& texels, Bc4Codes codes, int reach);
-
 // Writes the block. Each texel takes the nearest value, or the first of equally near ones.
 void write_bc4(const BlockTexels& texels, Bc4Codes codes, Bc4Endpoints endpoints, std::byte* block);
 

@@ -186,16 +186,4 @@ std::int64_t largest_file(const ReadOptions& options) {
     return texels * 16 / 3 * 4 + kHeader;
 }
 
-Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options) {
-    Result<InputFile> file = open_input(path, options);
-    if (!file) return std::move(file).error();
-    Result<std::vector<std::byte>> bytes = file->read_rest(largest_file(options));
-    if (!bytes && bytes.error().code == ErrorCode::unsupported) {
-        return Error{
-            ErrorCode::unsupported, path,
-            "larger than any file of " + std::to_string(options.max_texels) + " texels, which is the limit, can be"};
-    }
-    return bytes;
-}
-
 }  // namespace tex::inline v1

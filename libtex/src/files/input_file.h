@@ -76,8 +76,4 @@ Result<InputFile> open_input(const std::string& path, const ReadOptions& options
 // and a header.
 std::int64_t largest_file(const ReadOptions& options);
 
-// Reads all bytes of a file or of standard input ("-"). Errors: those of InputFile::open() and
-// read_rest(largest_file(options)).
-Result<std::vector<std::byte>> read_whole_file(const std::string& path, const ReadOptions& options = {});
-
 }  // namespace tex::inline v1
