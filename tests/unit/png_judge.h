@@ -41,7 +41,7 @@ inline Verdict refusal(const Error& error) {
 inline Verdict verdict_of(const Result<std::unique_ptr<RowSource>>& source, int together) {
     if (!source) return refusal(source.error());
     RowSource& rows = **source;
-    Verdict verdict{{}, ErrorCode::io, rows.extent(), rows.names(), rows.bits(), rows.normal_mark(), {}};
+    Verdict verdict{{}, ErrorCode::io, rows.extent(), rows.names(), rows.head().bits, rows.head().normal_mark, {}};
     const int height = rows.extent().height;
     verdict.rows.resize(rows.row_bytes() * static_cast<std::size_t>(height));
     for (int j = 0; j < height; j += together) {

@@ -186,18 +186,18 @@ TEST(Reader, TellsWhatATiffSaysAboutItsSamples) {
     ASSERT_TRUE(file);
     const Result<std::unique_ptr<RowSource>> rows = open_reader_rows(*file, quick());
     ASSERT_TRUE(rows) << rows.error().message();
-    EXPECT_EQ((*rows)->stored().kind, 2u);
-    EXPECT_EQ((*rows)->stored().bits, 16u);
-    EXPECT_EQ((*rows)->stored().has_place, 0u);
-    EXPECT_EQ((*rows)->stored().has_scale, 0u);
+    EXPECT_EQ((*rows)->head().samples.kind, 2u);
+    EXPECT_EQ((*rows)->head().samples.bits, 16u);
+    EXPECT_EQ((*rows)->head().samples.has_place, 0u);
+    EXPECT_EQ((*rows)->head().samples.has_scale, 0u);
     const std::string data = TEX_SOURCE_DIR "/../shared/data/wild/";
     if (!fs::exists(data)) GTEST_SKIP() << "../shared/data is not there";
     Result<InputFile> geo = InputFile::open(data + "gtif_scale_offset.tif");
     ASSERT_TRUE(geo);
     const Result<std::unique_ptr<RowSource>> geo_rows = open_reader_rows(*geo, quick());
     ASSERT_TRUE(geo_rows) << geo_rows.error().message();
-    EXPECT_EQ((*geo_rows)->stored().has_scale, 1u);
-    EXPECT_NE((*geo_rows)->stored().scale, 1.0);
+    EXPECT_EQ((*geo_rows)->head().samples.has_scale, 1u);
+    EXPECT_NE((*geo_rows)->head().samples.scale, 1.0);
 }
 
 TEST(Reader, RefusesCmyk) {

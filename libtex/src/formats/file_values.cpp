@@ -17,9 +17,9 @@ constexpr std::uint32_t kSigned = 2, kFloating = 3;
 
 // Whether the file says that its samples are quantities. Normals and colours are not, even if they are signed.
 bool states_quantities(const RowSource& rows) {
-    const StoredSamples& stored = rows.stored();
+    const StoredSamples& stored = rows.head().samples;
     if (stored.kind == 0) return false;
-    const bool is_mixed = rows.sample() == SampleKind::floating && stored.kind != kFloating;
+    const bool is_mixed = rows.head().sample == SampleKind::floating && stored.kind != kFloating;
     if (!is_mixed && !channel_groups(rows.names()).empty()) return false;
     return stored.kind == kSigned || (stored.kind != kFloating && stored.bits == 32) || stored.has_place != 0 ||
            stored.has_scale != 0;
@@ -29,30 +29,20 @@ bool states_quantities(const RowSource& rows) {
 class NumberRows final : public RowSource {
 public:
     explicit NumberRows(std::unique_ptr<RowSource> rows) : rows_(std::move(rows)) {
-        const StoredSamples& stored = rows_->stored();
         const bool has_numbers = rows_->store_numbers();
-        if (!has_numbers && rows_->sample() != SampleKind::floating) {
-            const int bits = rows_->bits() - (rows_->sample() == SampleKind::snorm ? 1 : 0);
+        head_ = rows_->head();
+        if (!has_numbers && head_.sample != SampleKind::floating) {
+            const int bits = head_.bits - (head_.sample == SampleKind::snorm ? 1 : 0);
             greatest_ = static_cast<double>((std::uint64_t{1} << bits) - 1);
         }
-        if (stored.has_scale != 0) {
-            scale_ = stored.scale;
-            offset_ = stored.offset;
+        if (head_.samples.has_scale != 0) {
+            head_.scale = head_.samples.scale;
+            head_.offset = head_.samples.offset;
         }
-        describe(rows_->extent(), rows_->names(), rows_->row_bytes());
-        describe_samples(SampleKind::floating, 32, rows_->normal_encoding());
-        describe_mark(rows_->normal_mark());
-        if (rows_->strength()) describe_heights(*rows_->strength());
-        describe_stored(stored);
-        describe_numbers(scale_, offset_);
-        describe_orientation(rows_->orientation(), rows_->is_turned());
-        if (!rows_->absent().empty()) describe_absent(rows_->absent());
-        describe_remark(rows_->remark());
-        if (rows_->is_masked()) describe_masked();
-        if (std::optional<float> value = rows_->no_data()) {
-            number(&*value, 1);
-            describe_no_data(value, rows_->is_no_data_assumed());
-        }
+        head_.sample = SampleKind::floating;
+        head_.bits = 32;
+        head_.stored = true;
+        if (head_.no_data) number(&*head_.no_data, 1);
     }
 
     [[nodiscard]] int rows_together() const override { return rows_->rows_together(); }
@@ -66,7 +56,7 @@ public:
     Result<void> finish() override { return rows_->finish(); }
     void store(const std::byte* rows, int first, int end, Image& image) const override {
         rows_->store(rows, first, end, image);
-        if (greatest_ == 1.0 && scale_ == 1.0 && offset_ == 0.0) return;
+        if (greatest_ == 1.0 && head_.scale == 1.0 && head_.offset == 0.0) return;
         for (Plane<float>& plane : image.planes) {
             for (int j = first; j < end; ++j) number(plane.row(j), extent().width);
         }
@@ -81,22 +71,20 @@ private:
             const double value = static_cast<double>(values[i]) * greatest_;
             const double whole = std::floor(value + 0.5);
             const bool is_whole = greatest_ != 1.0 && std::abs(value - whole) < kRounding;
-            values[i] = static_cast<float>((is_whole ? whole : value) * scale_ + offset_);
+            values[i] = static_cast<float>((is_whole ? whole : value) * head_.scale + head_.offset);
         }
     }
 
     std::unique_ptr<RowSource> rows_;
     double greatest_ = 1.0;  // the number whose fraction is 1
-    double scale_ = 1.0;
-    double offset_ = 0.0;
 };
 
 }  // namespace
 
 std::unique_ptr<RowSource> with_values(std::unique_ptr<RowSource> rows, FileValues values) {
     const bool wanted = values == FileValues::stored || (values == FileValues::automatic && states_quantities(*rows));
-    const bool has_scale = rows->stored().has_scale != 0;
-    if (!wanted || (rows->stored().kind == kFloating && !has_scale)) return rows;
+    const StoredSamples& stored = rows->head().samples;
+    if (!wanted || (stored.kind == kFloating && stored.has_scale == 0)) return rows;
     return std::make_unique<NumberRows>(std::move(rows));
 }
 

@@ -209,8 +209,8 @@ GroundFound ground_of(const GridPlace& given, Extent extent, const std::string& 
 
 GroundFound ground_of(const RowSource& rows, const InputFile& file) {
     const std::string path = file.whole_file() ? file.path() : std::string();
-    GridPlace place = rows.stored().place;
-    const bool has_numbers = rows.sample() == SampleKind::floating;
+    GridPlace place = rows.head().samples.place;
+    const bool has_numbers = rows.head().sample == SampleKind::floating;
     if (place.model == GridModel::none && has_numbers) {
         const std::string text = world_file_text(path);
         if (!text.empty()) place = world_file_place(text).value_or(GridPlace());
@@ -218,7 +218,7 @@ GroundFound ground_of(const RowSource& rows, const InputFile& file) {
     if (place.model == GridModel::none && !has_numbers)
         place = map_tile_place(path, rows.extent()).value_or(GridPlace());
     if (place.model == GridModel::none) return {};
-    if (rows.orientation() != 1) return unused("the picture was turned or mirrored");
+    if (rows.head().orientation != 1) return unused("the picture was turned or mirrored");
     const bool needs_unit = place.model == GridModel::numbers;
     return ground_of(place, rows.extent(), needs_unit ? text_beside(path, {".prj", ".PRJ"}) : std::string());
 }

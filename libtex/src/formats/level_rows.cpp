@@ -32,10 +32,9 @@ public:
         const Extent extent = texture_->levels[k].extent;
         pitch_ = level_bytes(texture_->head.format, {extent.width, 1});
         const auto block = static_cast<std::size_t>(info_.block.height);
-        describe(extent, channel_names(texture_->head), (pitch_ + block - 1) / block);
-        describe_samples(info_.sample, info_.bits);
+        describe(extent, channel_names(texture_->head), (pitch_ + block - 1) / block, info_.sample, info_.bits);
         if (const Texture& head = texture_->head; head.bumpiness_x != 0.0f)
-            describe_heights({head.bumpiness_x, head.bumpiness_y});
+            head_.strength = Strength{head.bumpiness_x, head.bumpiness_y};
         if (texture_->supercompression != Supercompression::none) open_inflater(texture_->levels[k]);
     }
 

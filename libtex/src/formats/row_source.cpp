@@ -29,9 +29,24 @@ std::string trailing_text(std::uint64_t bytes) {
            " not read";
 }
 
+void RowSource::describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes, SampleKind sample,
+                         int bits) {
+    head_.extent = extent;
+    head_.names = std::move(names);
+    head_.row_bytes = row_bytes;
+    head_.sample = sample;
+    head_.bits = bits;
+}
+
 void RowSource::describe_mark(std::string mark) {
-    strength_ = strength_in_mark(mark);
-    if (!strength_) normal_mark_ = std::move(mark);
+    head_.strength = strength_in_mark(mark);
+    if (!head_.strength) head_.normal_mark = std::move(mark);
+}
+
+void RowSource::describe_orientation(int orientation, bool is_turned) {
+    head_.orientation = orientation;
+    head_.is_turned = is_turned;
+    if (orientation != 1) head_.remark = orientation_text(orientation, is_turned);
 }
 
 // Stores the last rows of a picture where there is room for whole blocks, and copies them.
@@ -46,15 +61,15 @@ static void store_last(const RowSource& source, const std::byte* rows, int first
 
 Result<Image> RowSource::read_all() {
     Image image = make_image(extent(), names());
-    image.sample = sample();
-    image.bits = bits();
-    image.normal_encoding = normal_encoding();
-    image.normal_mark = normal_mark();
-    image.no_data = no_data();
-    image.stored = has_numbers();
-    image.scale = scale();
-    image.offset = offset();
-    image.remark = remark();
+    image.sample = head_.sample;
+    image.bits = head_.bits;
+    image.normal_encoding = head_.normal_encoding;
+    image.normal_mark = head_.normal_mark;
+    image.no_data = head_.no_data;
+    image.stored = head_.stored;
+    image.scale = head_.scale;
+    image.offset = head_.offset;
+    image.remark = head_.remark;
     std::vector<std::byte> rows(row_bytes() * static_cast<std::size_t>(rows_together()));
     for (int j = 0; j < extent().height; j += rows_together()) {
         const int count = std::min(rows_together(), extent().height - j);

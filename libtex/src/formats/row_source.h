@@ -21,6 +21,7 @@
 #include "blocks/extent.h"
 #include "files/input_file.h"
 #include "formats/stored_samples.h"
+#include "rows/height_source.h"
 
 namespace tex::inline v1 {
 
@@ -33,6 +34,22 @@ std::string orientation_text(int orientation, bool is_turned);
 // What Texture::trailing_bytes, which is not 0, means, as a sentence.
 std::string trailing_text(std::uint64_t bytes);
 
+// What a file says of a picture, besides its texels.
+struct PictureHead : PictureFacts {
+    Extent extent;
+    std::size_t row_bytes = 0;         // of a decoded row
+    std::string normal_encoding = {};  // this and the next two as in Image
+    std::string normal_mark = {};
+    std::string remark = {};
+    bool is_no_data_assumed = false;        // the file does not say no_data, but files of its type usually mean it
+    StoredSamples samples = {};             // of a GeoTIFF, for example, which states units
+    std::optional<Strength> strength = {};  // that a file of heights states (Texture::bumpiness_x)
+    int orientation = 1;                    // as in Texture
+    bool is_turned = true;                  // Texture::turned
+    bool is_multiplied = false;             // the file says that colours were multiplied by alpha; they still are
+    std::string absent = {};                // a sentence, in `remark` too: parts of the file were never written
+};
+
 class RowSource {
 public:
     RowSource() = default;
@@ -40,33 +57,10 @@ public:
     RowSource& operator=(const RowSource&) = delete;
     virtual ~RowSource() = default;
 
-    [[nodiscard]] Extent extent() const { return extent_; }
-    [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // of the channels
-    [[nodiscard]] std::size_t row_bytes() const { return row_bytes_; }              // of a decoded row
-    [[nodiscard]] SampleKind sample() const { return sample_; }  // this and the next three as in Image
-    [[nodiscard]] int bits() const { return bits_; }
-    [[nodiscard]] const std::string& normal_encoding() const { return normal_encoding_; }
-    [[nodiscard]] const std::string& normal_mark() const { return normal_mark_; }
-    [[nodiscard]] std::optional<float> no_data() const { return no_data_; }  // as in Image
-    // The file does not say it, but files of its type usually mean it.
-    [[nodiscard]] bool is_no_data_assumed() const { return is_no_data_assumed_; }
-    // What the file says about its samples: a GeoTIFF, for example, states units.
-    [[nodiscard]] const StoredSamples& stored() const { return stored_; }
-    // See Image::stored, Image::scale and Image::offset.
-    [[nodiscard]] bool has_numbers() const { return has_numbers_; }
-    [[nodiscard]] const std::string& remark() const { return remark_; }  // as in Image
-    // The strength that a file of heights states (Texture::bumpiness_x).
-    [[nodiscard]] std::optional<Strength> strength() const { return strength_; }
-    [[nodiscard]] int orientation() const { return orientation_; }  // as in Texture
-    [[nodiscard]] bool is_turned() const { return is_turned_; }     // Texture::turned
-    // The file says that colours were multiplied by alpha. They are read as they are stored.
-    [[nodiscard]] bool is_multiplied() const { return is_multiplied_; }
-    // Says that parts of the file were never written, as a sentence, which remark() has too.
-    [[nodiscard]] const std::string& absent() const { return absent_; }
-    // Whether store() makes texels NaN of which the file says, by a mask, that they hold no data.
-    [[nodiscard]] bool is_masked() const { return is_masked_; }
-    [[nodiscard]] double scale() const { return scale_; }
-    [[nodiscard]] double offset() const { return offset_; }
+    [[nodiscard]] const PictureHead& head() const { return head_; }
+    [[nodiscard]] Extent extent() const { return head_.extent; }
+    [[nodiscard]] const std::vector<std::string>& names() const { return head_.names; }
+    [[nodiscard]] std::size_t row_bytes() const { return head_.row_bytes; }
 
     // The number of rows that the file stores as one unit. decode() is cheapest if `first` is a multiple of this
     // number, and `count` either is a multiple too or reaches the last row.
@@ -78,8 +72,8 @@ public:
     // Limits reading to these planes; the contents of the other planes do not matter. Call this before rows are stored.
     virtual void choose_planes(const std::vector<bool>&) {}
 
-    // Makes store() and no_data() give the numbers that the file stores, exactly; false if this source cannot. Call
-    // this before rows are stored.
+    // Makes store() and PictureHead::no_data give the numbers that the file stores, exactly; false if this source
+    // cannot. Call this before rows are stored.
     virtual bool store_numbers() { return false; }
 
     // Makes store() ignore masks: vectors and colours stay as they are stored. Call this before rows are stored.
@@ -117,66 +111,12 @@ public:
     Result<void> visit(const std::string& name, const TakeRows& take);
 
 protected:
-    void describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes) {
-        extent_ = extent;
-        names_ = std::move(names);
-        row_bytes_ = row_bytes;
-    }
-    void describe_samples(SampleKind sample, int bits, std::string normal_encoding = {}) {
-        sample_ = sample;
-        bits_ = bits;
-        normal_encoding_ = std::move(normal_encoding);
-    }
-
+    void describe(Extent extent, std::vector<std::string> names, std::size_t row_bytes, SampleKind sample, int bits);
     // A mark of heights is no mark of normals.
     void describe_mark(std::string mark);
-    void describe_heights(const Strength& strength) { strength_ = strength; }
-    void describe_no_data(std::optional<float> value, bool is_assumed = false) {
-        no_data_ = value;
-        is_no_data_assumed_ = is_assumed;
-    }
-    void describe_stored(const StoredSamples& stored) { stored_ = stored; }
-    void describe_remark(std::string remark) { remark_ = std::move(remark); }
-    void describe_multiplied() {
-        is_multiplied_ = true;
-        remark_ = kMultipliedText;
-    }
-    void describe_orientation(int orientation, bool is_turned = true) {
-        orientation_ = orientation;
-        is_turned_ = is_turned;
-        if (orientation != 1) remark_ = orientation_text(orientation, is_turned);
-    }
-    void describe_absent(std::string text) {
-        remark_ += (remark_.empty() ? "" : "; ") + text;
-        absent_ = std::move(text);
-    }
-    void describe_masked() { is_masked_ = true; }
-    void describe_numbers(double scale, double offset) {
-        has_numbers_ = true;
-        scale_ = scale;
-        offset_ = offset;
-    }
+    void describe_orientation(int orientation, bool is_turned);
 
-private:
-    Extent extent_;
-    std::vector<std::string> names_;
-    std::size_t row_bytes_ = 0;
-    SampleKind sample_ = SampleKind::unorm;
-    int bits_ = 8;
-    std::string normal_encoding_;
-    std::string normal_mark_;
-    std::optional<float> no_data_;
-    bool is_no_data_assumed_ = false;
-    StoredSamples stored_;
-    bool has_numbers_ = false;
-    std::string remark_;
-    int orientation_ = 1;
-    std::string absent_;
-    bool is_masked_ = false;
-    bool is_multiplied_ = false;
-    bool is_turned_ = true;
-    std::optional<Strength> strength_;
-    double scale_ = 1.0, offset_ = 0.0;
+    PictureHead head_;
 };
 
 // Opens the picture in `file`, which must outlive the rows. Errors: those of read_image() that the header reveals.

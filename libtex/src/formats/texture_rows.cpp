@@ -19,20 +19,21 @@ namespace {
 // A picture as a texture of one level, read by rows.
 Result<TextureRows> picture_rows(const InputFile& file, Result<std::unique_ptr<RowSource>> rows) {
     if (!rows) return rows.error().of(file.path());
-    Result<PictureTexture> picture = picture_texture_of((*rows)->names(), (*rows)->sample(), (*rows)->bits());
+    const PictureHead& head = (*rows)->head();
+    Result<PictureTexture> picture = picture_texture_of(head.names, head.sample, head.bits);
     if (!picture) {  // a damaged picture is reported as damaged first
         const Result<Image> image = (*rows)->read_all();
         return (image ? picture.error() : image.error()).of(file.path());
     }
     TextureRows texture;
     texture.head = std::move(picture->head);
-    texture.head.normal_encoding = (*rows)->normal_encoding();
-    texture.head.orientation = (*rows)->orientation();
-    texture.head.turned = (*rows)->is_turned();
-    if (!(*rows)->absent().empty()) texture.head.remarks.push_back((*rows)->absent());
+    texture.head.normal_encoding = head.normal_encoding;
+    texture.head.orientation = head.orientation;
+    texture.head.turned = head.is_turned;
+    if (!head.absent.empty()) texture.head.remarks.push_back(head.absent);
     (*rows)->keep_masked();
-    if ((*rows)->is_multiplied()) texture.head.remarks.emplace_back(kMultipliedText);
-    apply_found_mark((*rows)->normal_mark(), texture.head);
+    if (head.is_multiplied) texture.head.remarks.emplace_back(kMultipliedText);
+    apply_found_mark(head.normal_mark, texture.head);
     texture.levels.push_back(std::move(*rows));
     texture.planes = std::move(picture->planes);
     texture.rounds = picture->rounds;

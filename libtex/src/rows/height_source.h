@@ -22,7 +22,7 @@ struct PictureFacts {
     bool stored = false;
     double scale = 1.0, offset = 0.0;
     std::optional<float> no_data;
-    bool is_masked = false;  // as RowSource::is_masked()
+    bool is_masked = false;  // some texels are made NaN, because the file says by a mask that they hold no data
 };
 
 [[nodiscard]] PictureFacts facts_of(const Image& image);

@@ -91,7 +91,7 @@ Result<BakeFileReport> bake_stream(InputFile& file, const std::string& output, C
     const MadeLevels levels{-first, first + report.levels, counted_from_base(options.mip, first), given->planes()};
     add_levels(flow, given->add_to(flow, *baked.normals), levels, targets, seen);
     if (const Result<void> done = flow.run(onward, sizes); !done) return done.error();
-    const auto* const terrain = dynamic_cast<const TerrainRows*>(heights->rows.get());
+    const TerrainRows* const terrain = heights->terrain;
     HeightCounts counts = heights->counts;
     if (terrain != nullptr) (counts = before) += terrain->counts();
     report.heights = report_of(*heights, counts);

@@ -20,8 +20,7 @@ class PlaneRows final : public RowSource {
 public:
     explicit PlaneRows(Plane<float> plane) : plane_(std::move(plane)) {
         const Extent extent = plane_.extent();
-        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float));
-        describe_samples(SampleKind::floating, 32);
+        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float), SampleKind::floating, 32);
     }
 
     [[nodiscard]] bool is_random() const override { return true; }

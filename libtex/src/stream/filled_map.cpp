@@ -27,8 +27,8 @@ public:
     explicit DecodedRows(const Image& image) : image_(image) {
         const Extent extent = image_.extent();
         plane_bytes_ = static_cast<std::size_t>(extent.width) * sizeof(float);
-        describe(extent, image_.names, plane_bytes_ * image_.planes.size());
-        describe_samples(image_.sample, image_.bits, image_.normal_encoding);
+        describe(extent, image_.names, plane_bytes_ * image_.planes.size(), image_.sample, image_.bits);
+        head_.normal_encoding = image_.normal_encoding;
     }
 
     [[nodiscard]] bool is_random() const override { return true; }

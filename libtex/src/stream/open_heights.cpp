@@ -24,28 +24,27 @@ namespace {
 // Errors: those of an option that does not fit the picture.
 Result<void> prepare(const InputFile& file, const BakeFileOptions& options, Heights& heights) {
     const RowSource& rows = *heights.rows;
+    const PictureHead& head = rows.head();
     if (!options.color.space.empty()) {
-        auto linear = linear_rows(rows.names(), rows.sample(), rows.bits(), options.color.config, options.color.space);
+        auto linear = linear_rows(head.names, head.sample, head.bits, options.color.config, options.color.space);
         if (!linear) return linear.error();
         heights.linear = std::move(*linear);
     }
     if (auto valid = validate(options.heights); !valid) return valid.error();
-    const PictureFacts facts{rows.names(), rows.sample(), rows.bits(),    rows.has_numbers(),
-                             rows.scale(), rows.offset(), rows.no_data(), rows.is_masked()};
-    heights.stored = rows.has_numbers();
-    heights.remark = rows.remark();
-    heights.assumes_no_data = rows.is_no_data_assumed() && !options.heights.no_data;
-    heights.stated = rows.strength();
-    Result<HeightSource> source = find_height_source(facts, options.heights);
+    heights.stored = head.stored;
+    heights.remark = head.remark;
+    heights.assumes_no_data = head.is_no_data_assumed && !options.heights.no_data;
+    heights.stated = head.strength;
+    Result<HeightSource> source = find_height_source(head, options.heights);
     if (!source) return source.error();
     heights.source = *source;
-    if (have_unit(facts, *source) && !heights.linear) {
+    if (have_unit(head, *source) && !heights.linear) {
         GroundFound found = ground_of(rows, file);
         heights.ground = found.ground;
         heights.ground_remark = std::move(found.remark);
     }
     Result<HeightOptions> with =
-        with_no_data(options.heights, facts, heights.source, heights.linear ? &*heights.linear : nullptr);
+        with_no_data(options.heights, head, heights.source, heights.linear ? &*heights.linear : nullptr);
     if (!with) return with.error();
     heights.options = *with;
     return {};
@@ -73,6 +72,7 @@ Result<void> fill(InputFile& file, const Execution& execution, bool keeps_holes,
         execution, heights.counts, heights.deband, keeps_holes ? &heights.with_holes : nullptr);
     if (!filled) return filled.error();
     heights.rows = std::move(*filled);
+    heights.terrain = nullptr;
     take_cleaned(heights);
     return {};
 }
@@ -95,6 +95,7 @@ Result<Heights> open_terrain(InputFile& file, const BakeFileOptions& options, co
     heights.options.wrap_x = heights.window->wrap_x;
     heights.options.wrap_y = heights.window->wrap_y;
     take_cleaned(heights);
+    heights.terrain = rows->get();
     heights.rows = std::move(*rows);
     return heights;
 }

@@ -29,16 +29,19 @@ struct TerrainWindow {
     Wrap wrap_x = Wrap::clamp, wrap_y = Wrap::clamp;
 };
 
+class TerrainRows;
+
 // A picture, and what happens to its rows before they become normals.
 struct Heights {
     std::unique_ptr<RowSource> rows;
+    const TerrainRows* terrain = nullptr;  // the rows, if they are a tile and what is around it, as it was read
     HeightSource source;
     std::optional<LinearRows> linear;  // if the picture is in another colour space
     HeightOptions options;
     HeightCounts counts;  // found so far
     DebandReport deband;
     bool stored = false;                  // as Image::stored
-    bool assumes_no_data = false;         // as RowSource::is_no_data_assumed(), unless the options name a value
+    bool assumes_no_data = false;         // as PictureHead::is_no_data_assumed, unless the options name a value
     std::string remark;                   // as Image::remark
     std::optional<Image> last;            // the last rows, if they are needed first
     std::optional<Strength> stated;       // the strength that the file states

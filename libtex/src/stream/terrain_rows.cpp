@@ -51,8 +51,8 @@ Result<std::unique_ptr<TerrainRows>> TerrainRows::open(InputFile& file, const Ba
     rows->center_source_ = rows->center_->heights().source;
     rows->center_options_ = rows->center_->heights().options;
     const TerrainWindow& window = rows->window_;
-    rows->describe(window.extent, {"Y"}, static_cast<std::size_t>(window.extent.width) * sizeof(float));
-    rows->describe_samples(SampleKind::floating, 32);
+    rows->describe(window.extent, {"Y"}, static_cast<std::size_t>(window.extent.width) * sizeof(float),
+                   SampleKind::floating, 32);
     rows->row_.resize(static_cast<std::size_t>(window.extent.width));
     return rows;
 }

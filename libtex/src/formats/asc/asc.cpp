@@ -109,10 +109,10 @@ GridPlace place_of(const AscHeader& header, Extent extent) {
 class AscRows final : public RowSource {
 public:
     AscRows(WordReader words, const AscHeader& header, Extent extent) : words_(std::move(words)) {
-        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float));
-        describe_samples(SampleKind::floating, 32);
-        describe_stored({.kind = 3, .bits = 32, .has_place = 1, .place = place_of(header, extent)});
-        describe_no_data(float_of(header[kNoDataValue].value_or(kUsualNoData)), !header[kNoDataValue].has_value());
+        describe(extent, {"Y"}, static_cast<std::size_t>(extent.width) * sizeof(float), SampleKind::floating, 32);
+        head_.samples = {.kind = 3, .bits = 32, .has_place = 1, .place = place_of(header, extent)};
+        head_.no_data = float_of(header[kNoDataValue].value_or(kUsualNoData));
+        head_.is_no_data_assumed = !header[kNoDataValue].has_value();
     }
 
     Result<void> decode(int first, int count, std::byte* rows) override {

@@ -64,19 +64,19 @@ ExrRows::ExrRows(std::shared_ptr<ExrReader> reader, const std::vector<ExrChannel
         bytes += (size + kAlignment - 1) / kAlignment * kAlignment;
     }
     wanted_.assign(planes_.size(), true);
-    describe_remark(remark);
-    describe(extent, std::move(names), bytes);
+    head_.remark = remark;
     const auto all = [&](Imf::PixelType type) {
         return std::all_of(channels.begin(), channels.end(),
                            [type](const ExrChannel& channel) { return channel.type == type; });
     };
     if (std::any_of(channels.begin(), channels.end(), [](const ExrChannel& c) { return c.type == Imf::UINT; }))
-        describe_stored({.kind = 1, .bits = 32});
+        head_.samples = {.kind = 1, .bits = 32};
     if (const auto* bumpiness = reader_->header().findTypedAttribute<Imf::V2fAttribute>(kHeightBumpiness))
-        describe_heights({bumpiness->value().x, bumpiness->value().y});
+        head_.strength = Strength{bumpiness->value().x, bumpiness->value().y};
     const auto* text = reader_->header().findTypedAttribute<Imf::StringAttribute>(kNormalEncoding);
-    describe_samples(all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating, all(Imf::HALF) ? 16 : 32,
-                     text == nullptr ? "" : text->value());
+    if (text != nullptr) head_.normal_encoding = text->value();
+    describe(extent, std::move(names), bytes, all(Imf::UINT) ? SampleKind::unorm : SampleKind::floating,
+             all(Imf::HALF) ? 16 : 32);
 }
 
 void ExrRows::store(const std::byte* rows, int first, int end, Image& image) const {

@@ -93,8 +93,8 @@ Result<void> PngRows::open(const ReadOptions& options) {
     is_interlaced_ = libpng_->is_interlaced();
     is_wide_ = bits == 16;
     describe(extent, channel_names(channels),
-             static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels * bits / 8));
-    describe_samples(SampleKind::unorm, kind.is_palette ? 8 : kind.bit_depth);
+             static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels * bits / 8), SampleKind::unorm,
+             kind.is_palette ? 8 : kind.bit_depth);
     describe_mark(libpng_->normal_mark());
     describe_orientation(libpng_->orientation(), libpng_->orientation() == 1);
     if (is_interlaced_ || only_libpng_) return libpng_->start();

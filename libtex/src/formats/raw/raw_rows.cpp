@@ -30,20 +30,20 @@ public:
         : file_(file), samples_(place.samples), first_(place.first),
           pitch_(place.pitch != 0 ? place.pitch : static_cast<std::size_t>(place.extent.width) * place.samples.bytes()),
           no_data_number_(place.no_data) {
-        describe(place.extent, {"Y"}, static_cast<std::size_t>(place.extent.width) * samples_.bytes());
-        describe_samples(samples_.kind, samples_.bits);
-        describe_stored({.kind = tiff_kind(samples_.kind),
+        describe(place.extent, {"Y"}, static_cast<std::size_t>(place.extent.width) * samples_.bytes(), samples_.kind,
+                 samples_.bits);
+        head_.samples = {.kind = tiff_kind(samples_.kind),
                          .bits = static_cast<std::uint32_t>(samples_.bits),
                          .has_place = place.has_place ? 1u : 0u,
-                         .place = place.place});
-        describe_no_data(no_data_number_ ? std::optional(fraction(*no_data_number_)) : std::nullopt);
-        describe_remark(std::move(place.remark));
+                         .place = place.place};
+        if (no_data_number_) head_.no_data = fraction(*no_data_number_);
+        head_.remark = std::move(place.remark);
     }
 
     [[nodiscard]] bool is_random() const override { return true; }
     bool store_numbers() override {
         has_numbers_ = true;
-        describe_no_data(no_data_number_);
+        head_.no_data = no_data_number_;
         return true;
     }
     Result<void> decode(int first, int count, std::byte* rows) override;

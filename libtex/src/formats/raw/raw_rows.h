@@ -29,7 +29,7 @@ struct RawTexels {
     std::size_t pitch = 0;              // bytes from a row to the next; 0: rows follow each other without a gap
     bool has_place = false;             // on the Earth, so that the samples have a unit (StoredSamples::has_place)
     std::optional<float> no_data = {};  // as the file stores it
-    std::string remark = {};            // RowSource::remark()
+    std::string remark = {};            // PictureHead::remark
     GridPlace place = {};               // StoredSamples::place
 
     // The number of bytes up to the last texel. Does not overflow: at most 2^41 texels of 4 bytes, and a pitch that the

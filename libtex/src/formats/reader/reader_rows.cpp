@@ -27,8 +27,7 @@ namespace {
 
 // The first bytes of a file type, and its name, which is that of OpenImageIO's format.
 struct Mark {
-    std::string_view bytes;
-    std::string_view format;
+    std::string_view bytes, format;
 };
 
 using namespace std::string_view_literals;
@@ -232,7 +231,7 @@ public:
     Result<void> finish() override;
     bool store_numbers() override {
         scale_.numbers = true;
-        describe_no_data(no_data_value());
+        head_.no_data = no_data_value();
         return true;
     }
     void store(const std::byte* rows, int first, int end, Image& image) const override;
@@ -283,21 +282,26 @@ Result<void> ReaderRows::open(const ReadOptions& options) {
     if (claimed > static_cast<std::uint64_t>(std::max<std::int64_t>(options.reader_memory, 0)))
         return invalid_answer(file_.path());
     header_ = *header;
-    describe(*extent, plane_names(header_), tex::row_bytes(header_));
+    describe(*extent, plane_names(header_), tex::row_bytes(header_), scale_.kind, scale_.bits);
     const Result<Scale> scale = find_scale();
     if (!scale) return scale.error();
     scale_ = *scale;
-    describe_samples(scale_.kind, scale_.bits);
+    head_.sample = scale_.kind;
+    head_.bits = scale_.bits;
     const std::string_view text(header_.description, strnlen(header_.description, sizeof header_.description));
     describe_mark(std::string(mark_in_description(text)));
-    describe_no_data(no_data_value());
+    head_.no_data = no_data_value();
     if (!std::isfinite(header_.stored.scale) || !std::isfinite(header_.stored.offset))
         return invalid_answer(file_.path());
-    describe_stored(header_.stored);
-    if (header_.is_multiplied != 0) describe_multiplied();
-    if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation));
-    if (header_.absent_chunks > 0) describe_absent(absent_text(header_, no_data().has_value()));
-    if (header_.mask != ReaderMask::none) describe_masked();
+    head_.samples = header_.stored;
+    head_.is_multiplied = header_.is_multiplied != 0;
+    head_.is_masked = header_.mask != ReaderMask::none;
+    if (head_.is_multiplied) head_.remark = kMultipliedText;
+    if (header_.orientation > 1) describe_orientation(static_cast<int>(header_.orientation), true);
+    if (header_.absent_chunks > 0) {
+        head_.absent = absent_text(header_, head_.no_data.has_value());
+        head_.remark += (head_.remark.empty() ? "" : "; ") + head_.absent;
+    }
     return {};
 }
 
