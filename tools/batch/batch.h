@@ -75,6 +75,7 @@ class Converter : public Batch {
 public:
     using Batch::Batch;
 
+    static constexpr bool kIsStep = true;  // ProgramRow::is_step
     OutputOptions output;
 
     // For build-normals, which decides itself about inputs and outputs, and joins steps. Command::parse() has read the
@@ -104,8 +105,6 @@ public:
     [[nodiscard]] Result<void> check_task(const Task& task) { return check({task}); }
     // Does what process() does, for a job of such a task.
     [[nodiscard]] Result<void> process_task(Job& job);
-    // Whether a manifest can name it. The files of a step are the same for all of its inputs.
-    [[nodiscard]] virtual bool can_be_step() const { return true; }
     // What process() does, as a step of apply_steps(). Nothing if the command does something else.
     [[nodiscard]] virtual std::optional<Step> step(Job&) { return std::nullopt; }
     // An error if the job's input is not what the command takes, such as colours instead of normals. Reads all of it.

@@ -28,6 +28,7 @@ class Program;
 struct ProgramRow {
     std::string_view name;     // "bake-normals"
     std::string_view summary;  // a sentence
+    bool is_step;              // it makes an output from each input, so that a manifest can name it
     std::unique_ptr<Program> (*make)(const ProgramRow& row);
 };
 
@@ -59,7 +60,8 @@ void register_program(const ProgramRow& row);
 template <class P>
 struct Registered {
     Registered(std::string_view name, std::string_view summary) noexcept {
-        register_program({name, summary,
+        constexpr bool kIsStep = requires { requires P::kIsStep; };
+        register_program({name, summary, kIsStep,
                           [](const ProgramRow& row) -> std::unique_ptr<Program> { return std::make_unique<P>(row); }});
     }
 };

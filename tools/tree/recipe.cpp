@@ -29,11 +29,6 @@ constexpr const char* kOutputGroup = "Output";
 constexpr const char* kLevelsGroup = "Mip chain";
 constexpr const char* kDataGroup = "Data beside the normals";
 
-Converter* converter_of(Program& program) {
-    auto* const converter = dynamic_cast<Converter*>(&program);
-    return converter != nullptr && converter->can_be_step() ? converter : nullptr;
-}
-
 const Row* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
     for (const Row& row : command.rows()) {
         const bool is_in = std::find(groups.begin(), groups.end(), row.group) != groups.end();
@@ -75,9 +70,7 @@ bool is_file(const std::string& value, const Row& row) {
 std::vector<std::string> step_names() {
     std::vector<std::string> names;
     for (const ProgramRow& row : programs()) {
-        const std::unique_ptr<Program> program = row.make(row);
-        if (converter_of(*program) != nullptr && row.name.ends_with(kSuffix))
-            names.emplace_back(row.name.substr(0, row.name.size() - std::string_view(kSuffix).size()));
+        if (row.is_step) names.emplace_back(row.name.substr(0, row.name.size() - std::string_view(kSuffix).size()));
     }
     return names;
 }
@@ -260,7 +253,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     };
     try {
         command.program = parsed(step, std::move(line), out, console);
-        command.converter = converter_of(*command.program);
+        command.converter = dynamic_cast<Converter*>(command.program.get());
         if (fs::path(out).extension().empty())
             command.extension =
                 extension_of(command.converter->output_for_task().made_container().value_or(Container::dds));
