@@ -200,6 +200,8 @@ ban '#include <(pybind11/|Python)' 'only the Python module knows Python' "${outs
 mapfile -t plugin < <(select_files '^libtex/oiio/.*\.(cpp|h)$')
 ban '#include "[a-z]+/' 'the plug-in uses the public headers of libtex alone' "${plugin[@]}"
 mapfile -t outside_mesh_reader < <(select_files '^(libtex|tools)/.*\.(cpp|h)$' | grep -v '^tools/mesh-reader/' || true)
+mapfile -t commands < <(select_files '^tools/([a-z]+-normals\.cpp|(batch|tasks|tree)/.*)$')
+ban '\bfor \(.*[.:>_ ](width|height)\b' 'commands leave loops over texels to the library' "${commands[@]}"
 ban '#include <assimp' 'only the mesh reader knows Assimp' "${outside_mesh_reader[@]}"
 ban '#include ("|<(hwy|png|isa-l|OpenEXR|Imath|Imf|OpenColorIO|OpenImageIO|tbb|fmt))' \
     'a public header shows a private name' "${public[@]}"
