@@ -51,7 +51,7 @@ BuildNormals::BuildNormals(const cli::ProgramRow& row) : Program(row) {
     command.input("MANIFEST", "what to build (default: normals.toml)");
     command.finds_things();
     command.group("Build");
-    cli::Row& root = command.text(root_, "--root", "DIR", "the folder that paths of the manifest are relative to");
+    cli::Option& root = command.text(root_, "--root", "DIR", "the folder that paths of the manifest are relative to");
     root.often(2, "the folder that paths of the manifest are relative to").completes = cli::Completes::directories;
     root.preset = "the manifest's";
     command.flag(build_.dry_run, "--dry-run", "print what would be made, and why; write nothing")

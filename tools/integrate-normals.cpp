@@ -93,7 +93,7 @@ IntegrateNormals::IntegrateNormals(const cli::ProgramRow& row) : NormalsConverte
 }
 
 void IntegrateNormals::add_level() {
-    cli::Row& option =
+    cli::Option& option =
         command.option("--level", "N", "the level to integrate, from 0, or all", [this](const std::string& text) {
             all_levels_ = text == "all";
             if (!all_levels_) level_ = cli::parse_int(text, 0, std::numeric_limits<int>::max());

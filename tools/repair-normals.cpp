@@ -138,7 +138,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
                        options_.bumpiness = static_cast<float>(
                            cli::parse_double(text, {.least = 1e-20, .greatest = 1e20, .of_magnitude = true}));
                    });
-    cli::Row& layout =
+    cli::Option& layout =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) { options_.checks.swizzle = cli::parse_swizzle(text); });
     layout.words = cli::swizzle_words();

@@ -40,7 +40,7 @@ private:
 
 UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("textures or pictures of normals; - is standard input");
-    cli::Row& option =
+    cli::Option& option =
         command.option("--level", "N", "the level to unpack, from 0, or all", [this](const std::string& text) {
             all_levels_ = text == "all";
             if (!all_levels_) level_ = cli::parse_int(text, 0, std::numeric_limits<int>::max());

@@ -27,7 +27,7 @@ namespace {
 std::set<std::string> options_of(const ProgramRow& program) {
     const std::unique_ptr<Program> command = program.make(program);
     std::set<std::string> names;
-    for (const Row& row : command->command.rows()) {
+    for (const Option& row : command->command.options()) {
         if (!row.hidden) names.insert(row.names.begin(), row.names.end());
     }
     return names;

@@ -75,7 +75,7 @@ TEST(Manifest, EveryOptionThatSaysHowNormalsAreMadeIsAKey) {
     for (const std::string& step : step_names()) {
         const ProgramRow* const row = find_program(step + "-normals");
         const std::unique_ptr<Program> program = row->make(*row);
-        for (const Row& option : program->command.rows()) {
+        for (const Option& option : program->command.options()) {
             if (option.hidden) continue;
             const std::string message =
                 refusal_of("[ { " + step + " = { " + option.name().substr(2) + " = \"\\u0001\" } } ]");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which options write files (Row::writes, "writes" in --help --json), and that build-normals makes outputs of all that
-// a manifest can set: below out-dir, in the report, made again, cached and pruned.
+// Which options write files (Option::writes, "writes" in --help --json), and that build-normals makes outputs of all
+// that a manifest can set: below out-dir, in the report, made again, cached and pruned.
 
 #include <algorithm>
 #include <map>

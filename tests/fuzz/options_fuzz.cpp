@@ -71,7 +71,7 @@ std::vector<std::string> arguments_of(const std::uint8_t* data, std::size_t size
     const auto end_line = [&] {
         line = line.substr(0, line.find('\0'));
         if (!line.empty() && static_cast<unsigned char>(line[0]) >= 128) {
-            const cli::Row& row = command.rows()[static_cast<unsigned char>(line[0]) % command.rows().size()];
+            const cli::Option& row = command.options()[static_cast<unsigned char>(line[0]) % command.options().size()];
             arguments.push_back(row.name());
             if (!row.value.empty()) arguments.push_back(line.substr(1));
         } else {

@@ -22,7 +22,7 @@ namespace {
 
 template <class Rows>
 auto* find_row(Rows& rows, std::string_view name) {
-    const auto found = std::find_if(rows.begin(), rows.end(), [name](const Row& row) {
+    const auto found = std::find_if(rows.begin(), rows.end(), [name](const Option& row) {
         return std::find(row.names.begin(), row.names.end(), name) != row.names.end();
     });
     return found == rows.end() ? nullptr : &*found;
@@ -31,7 +31,7 @@ auto* find_row(Rows& rows, std::string_view name) {
 bool is_option(std::string_view argument) { return argument.size() > 1 && argument.front() == '-'; }
 
 // The value of `row` that the argument itself contains, if it contains one.
-std::optional<std::string> value_of(const Row& row, std::string_view argument) {
+std::optional<std::string> value_of(const Option& row, std::string_view argument) {
     const bool is_long = argument.starts_with("--");
     const std::size_t place = is_long ? argument.find('=') : 2;
     const bool is_flag = row.value.empty();
@@ -73,9 +73,9 @@ Command::Command(std::string_view name, std::string_view summary) : name_(name),
     flag(list_options_, "--list-options", "print the option table and exit").hidden = true;
 }
 
-Row& Command::option(const std::string& names, std::string value, std::string help,
-                     std::function<void(const std::string& text)> take) {
-    Row& row = rows_.emplace_back();
+Option& Command::option(const std::string& names, std::string value, std::string help,
+                        std::function<void(const std::string& text)> take) {
+    Option& row = options_.emplace_back();
     row.group = group_;
     row.names = split(names, ',');
     row.value = std::move(value);
@@ -84,14 +84,14 @@ Row& Command::option(const std::string& names, std::string value, std::string he
     return row;
 }
 
-Row& Command::flag(bool& target, const std::string& names, std::string help) {
-    Row& row = option(names, {}, std::move(help), [&target](const std::string&) { target = true; });
+Option& Command::flag(bool& target, const std::string& names, std::string help) {
+    Option& row = option(names, {}, std::move(help), [&target](const std::string&) { target = true; });
     row.repeatable = true;
     return row;
 }
 
-Row& Command::text(std::string& target, const std::string& names, std::string value, std::string help) {
-    Row& row = option(names, std::move(value), std::move(help), [&target](const std::string& text) {
+Option& Command::text(std::string& target, const std::string& names, std::string value, std::string help) {
+    Option& row = option(names, std::move(value), std::move(help), [&target](const std::string& text) {
         if (text.empty()) throw UsageError("needs a value that is not empty");
         target = text;
     });
@@ -99,40 +99,40 @@ Row& Command::text(std::string& target, const std::string& names, std::string va
     return row;
 }
 
-Row& Command::output_file(std::string& target, const std::string& names, std::string help) {
-    Row& row = text(target, names, "FILE", std::move(help));
+Option& Command::output_file(std::string& target, const std::string& names, std::string help) {
+    Option& row = text(target, names, "FILE", std::move(help));
     row.completes = Completes::files;
     row.writes = true;
     return row;
 }
 
-Row& Command::number(float& target, const std::string& names, std::string value, Range range, std::string help) {
-    Row& row = option(names, std::move(value), std::move(help),
-                      [&target, range](const std::string& text) { target = parse_float(text, range); });
+Option& Command::number(float& target, const std::string& names, std::string value, Range range, std::string help) {
+    Option& row = option(names, std::move(value), std::move(help),
+                         [&target, range](const std::string& text) { target = parse_float(text, range); });
     row.preset = fmt::format("{}", target);
     return row;
 }
 
-Row& Command::number(int& target, const std::string& names, std::string value, int least, int greatest,
-                     std::string help) {
-    Row& row = option(names, std::move(value), std::move(help), [&target, least, greatest](const std::string& text) {
+Option& Command::number(int& target, const std::string& names, std::string value, int least, int greatest,
+                        std::string help) {
+    Option& row = option(names, std::move(value), std::move(help), [&target, least, greatest](const std::string& text) {
         target = parse_int(text, least, greatest);
     });
     row.preset = fmt::format("{}", target);
     return row;
 }
 
-Row& Command::number(int& target, const std::string& names, std::string value, Range range, std::string help) {
-    Row& row = option(names, std::move(value), std::move(help),
-                      [&target, range](const std::string& text) { target = parse_int(text, range); });
+Option& Command::number(int& target, const std::string& names, std::string value, Range range, std::string help) {
+    Option& row = option(names, std::move(value), std::move(help),
+                         [&target, range](const std::string& text) { target = parse_int(text, range); });
     row.preset = fmt::format("{}", target);
     return row;
 }
 
-Row& Command::choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
-                         std::function<void(const std::string& name)> take) {
+Option& Command::choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
+                            std::function<void(const std::string& name)> take) {
     std::vector<std::string> valid = names_of(words);
-    Row& row = option(
+    Option& row = option(
         names, std::move(value), std::move(help),
         [valid = std::move(valid), take = std::move(take)](const std::string& name) { take(known_word(name, valid)); });
     row.words = std::move(words);
@@ -147,11 +147,11 @@ std::string Command::unknown_option(std::string name) const {
     std::string text = "unknown option " + printable(name);
     if (is_foreign_option(name))
         return text + foreign_option_answer(name, [this](std::string_view option) {
-                   const Row* row = find_row(rows_, option);
+                   const Option* row = find_row(options_, option);
                    return row != nullptr && !row->hidden;
                });
     std::vector<std::string> names;
-    for (const Row& row : rows_) {
+    for (const Option& row : options_) {
         if (!row.hidden) names.insert(names.end(), row.names.begin(), row.names.end());
     }
     return text + did_you_mean(name, names);
@@ -192,7 +192,7 @@ Result<std::string> Command::sort(Arguments given) {
         only_inputs = argument == "--";
         if (only_inputs) continue;
         const bool is_long = argument.starts_with("--");
-        Row* row = find_row(rows_, argument.substr(0, is_long ? argument.find('=') : 2));
+        Option* row = find_row(options_, argument.substr(0, is_long ? argument.find('=') : 2));
         if (row == nullptr) {
             if (mistake.empty()) mistake = unknown_option(cut(argument, '=').first);
             continue;
@@ -211,7 +211,7 @@ void Command::answer(std::string text) {
 }
 
 void Command::take_values() {
-    for (const Row& row : rows_) {
+    for (const Option& row : options_) {
         if (row.given.size() > 1 && !row.repeatable)
             throw UsageError(fmt::format("{} is given more than once", row.name()));
         for (const std::string& text : row.given) {
@@ -251,19 +251,19 @@ std::optional<ExitCode> Command::parse(Arguments arguments, Console& console) {
 }
 
 void Command::drop_table() {
-    std::deque<Row> all;
-    all.swap(rows_);
+    std::deque<Option> all;
+    all.swap(options_);
     checks_.clear();
-    for (Row& row : all) {
+    for (Option& row : all) {
         if (row.given.empty()) continue;
-        Row& kept = rows_.emplace_back();
+        Option& kept = options_.emplace_back();
         kept.names = std::move(row.names);
         kept.given = std::move(row.given);
     }
 }
 
 bool Command::given(std::string_view name) const {
-    const Row* row = find_row(rows_, name);
+    const Option* row = find_row(options_, name);
     return row != nullptr && !row->given.empty();
 }
 

@@ -51,7 +51,8 @@ template <class E, std::size_t N>
 
 enum class Completes { nothing, words, files, directories };
 
-struct Row {
+// An option of a command: a row of its table.
+struct Option {
     std::string group;                // heading in the help
     std::vector<std::string> names;   // "-o", "--output"
     std::string value;                // placeholder of the value: "FILE"; empty for a flag
@@ -73,7 +74,7 @@ struct Row {
 
     [[nodiscard]] const std::string& name() const { return names.back(); }  // the long one
     // Marks an option that most people use. -h prints those with the least ranks.
-    Row& often(int its_rank, std::string clause) {
+    Option& often(int its_rank, std::string clause) {
         rank = its_rank;
         brief = std::move(clause);
         return *this;
@@ -105,26 +106,26 @@ public:
     void group(std::string title) { group_ = std::move(title); }
 
     // Adds an option with a value. `take` gets the text and throws UsageError. References to rows stay valid.
-    Row& option(const std::string& names, std::string value, std::string help,
-                std::function<void(const std::string& text)> take);
-    Row& flag(bool& target, const std::string& names, std::string help);
-    Row& text(std::string& target, const std::string& names, std::string value, std::string help);
+    Option& option(const std::string& names, std::string value, std::string help,
+                   std::function<void(const std::string& text)> take);
+    Option& flag(bool& target, const std::string& names, std::string help);
+    Option& text(std::string& target, const std::string& names, std::string value, std::string help);
     // A file that is written.
-    Row& output_file(std::string& target, const std::string& names, std::string help);
-    Row& number(float& target, const std::string& names, std::string value, Range range, std::string help);
-    Row& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
-    Row& number(int& target, const std::string& names, std::string value, Range range, std::string help);
+    Option& output_file(std::string& target, const std::string& names, std::string help);
+    Option& number(float& target, const std::string& names, std::string value, Range range, std::string help);
+    Option& number(int& target, const std::string& names, std::string value, int least, int greatest, std::string help);
+    Option& number(int& target, const std::string& names, std::string value, Range range, std::string help);
     template <class E, std::size_t N>
-    Row& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
-                const std::string& help, bool (*fits)(E) = nullptr) {
-        Row& row = choice_row(names, value, help, words_of(table, fits),
-                              [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
+    Option& choice(E& target, const std::string& names, const std::string& value, const Named<E> (&table)[N],
+                   const std::string& help, bool (*fits)(E) = nullptr) {
+        Option& row = choice_row(names, value, help, words_of(table, fits),
+                                 [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
         row.preset = name_of(table, target);
         return row;
     }
     template <class E, std::size_t N>
-    Row& choice(std::optional<E>& target, const std::string& names, const std::string& value,
-                const Named<E> (&table)[N], const std::string& help) {
+    Option& choice(std::optional<E>& target, const std::string& names, const std::string& value,
+                   const Named<E> (&table)[N], const std::string& help) {
         return choice_row(names, value, help, words_of(table),
                           [&target, &table](const std::string& name) { target = *find_by_name(table, name); });
     }
@@ -161,11 +162,11 @@ public:
     [[nodiscard]] const std::vector<Example>& examples() const { return examples_; }
     [[nodiscard]] const Word& input() const { return input_; }
     [[nodiscard]] bool finds() const { return finds_; }
-    [[nodiscard]] const std::deque<Row>& rows() const { return rows_; }
+    [[nodiscard]] const std::deque<Option>& options() const { return options_; }
 
 private:
-    Row& choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
-                    std::function<void(const std::string& name)> take);
+    Option& choice_row(const std::string& names, std::string value, std::string help, std::vector<Word> words,
+                       std::function<void(const std::string& name)> take);
     [[nodiscard]] Result<std::vector<std::string>> arguments_in(const std::string& file);
     [[nodiscard]] Result<std::string> sort(Arguments given);
     [[nodiscard]] std::string unknown_option(std::string name) const;
@@ -178,7 +179,7 @@ private:
     std::vector<Example> examples_;
     Word input_;
     std::vector<std::string> inputs_;
-    std::deque<Row> rows_;
+    std::deque<Option> options_;
     std::vector<std::function<void()>> checks_;
     bool finds_ = false;
     bool has_read_standard_input_ = false;

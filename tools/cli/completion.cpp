@@ -23,7 +23,7 @@ std::string bash_script(const Command& command) {
     const std::string function = fmt::format("_{}", replace_all(command.name(), "-", "_"));
     std::string cases, files, directories, others;
     std::vector<std::string> options;
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.hidden) continue;
         options.insert(options.end(), row.names.begin(), row.names.end());
         const std::string pattern = join(row.names, "|");
@@ -76,7 +76,7 @@ std::string zsh_escaped(std::string text) {
     return replace_all(text, "'", "'\\''");
 }
 
-std::string zsh_action(const Row& row) {
+std::string zsh_action(const Option& row) {
     if (row.completes == Completes::files) return "_files";
     if (row.completes == Completes::directories) return "_files -/";
     if (row.completes == Completes::nothing) return " ";
@@ -95,7 +95,7 @@ std::string zsh_action(const Row& row) {
 
 std::string zsh_script(const Command& command) {
     std::string out = fmt::format("#compdef {}\n\n_arguments -S \\\n", command.name());
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.hidden) continue;
         for (const std::string& name : row.names) {
             const std::string others =
@@ -116,7 +116,7 @@ std::string fish_quoted(std::string text) {
 
 std::string fish_script(const Command& command) {
     std::string out = fmt::format("# fish completion for {}\n", command.name());
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.hidden) continue;
         out += fmt::format("complete -c {}", command.name());
         for (const std::string& name : row.names) {

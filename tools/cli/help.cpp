@@ -16,7 +16,7 @@ constexpr std::size_t kColumn = 26;  // the column where explanations begin
 
 std::vector<std::string> groups_in_order(const Command& command) {
     std::vector<std::string> groups;
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (std::find(groups.begin(), groups.end(), row.group) == groups.end()) groups.push_back(row.group);
     }
     std::stable_partition(groups.begin(), groups.end(), [](const std::string& group) { return group != kHelpGroup; });
@@ -24,16 +24,16 @@ std::vector<std::string> groups_in_order(const Command& command) {
 }
 
 // "  -o, --output FILE"; rows without a short name are indented to line up.
-std::string left_column(const Row& row, const std::string& value) {
+std::string left_column(const Option& row, const std::string& value) {
     std::string left = (row.names.size() > 1 ? "  " : "      ") + join(row.names);
     if (!value.empty()) left += " " + value;
     return left;
 }
 
 // Without what may follow the value: "FILE" of "FILE[:CHANNEL]".
-std::string brief_left(const Row& row) { return left_column(row, row.value.substr(0, row.value.find('['))); }
+std::string brief_left(const Option& row) { return left_column(row, row.value.substr(0, row.value.find('['))); }
 
-std::string explanation(const Row& row) {
+std::string explanation(const Option& row) {
     std::string text = row.help;
     if (!row.words.empty()) {
         std::vector<std::string> names = names_of(row.words);
@@ -78,15 +78,16 @@ std::string example_text(const Example& example) {
 }
 
 // The rows with the least ranks, in the order of the table.
-std::vector<const Row*> most_used(const Command& command) {
+std::vector<const Option*> most_used(const Command& command) {
     constexpr std::size_t kMost = 8;
-    std::vector<const Row*> by_rank, rows;
-    for (const Row& row : command.rows()) {
+    std::vector<const Option*> by_rank, rows;
+    for (const Option& row : command.options()) {
         if (row.rank != 0) by_rank.push_back(&row);
     }
-    std::stable_sort(by_rank.begin(), by_rank.end(), [](const Row* a, const Row* b) { return a->rank < b->rank; });
+    std::stable_sort(by_rank.begin(), by_rank.end(),
+                     [](const Option* a, const Option* b) { return a->rank < b->rank; });
     if (by_rank.size() > kMost) by_rank.resize(kMost);
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (std::find(by_rank.begin(), by_rank.end(), &row) != by_rank.end()) rows.push_back(&row);
     }
     return rows;
@@ -98,8 +99,8 @@ std::string brief_help_text(const Command& command) {
     constexpr std::size_t kForms = 2, kExamples = 3;
     std::string out = fmt::format("{}\n{}\n", summary_text(command), usage_text(command, kForms));
     std::size_t column = 0;
-    for (const Row* row : most_used(command)) column = std::max(column, brief_left(*row).size() + 2);
-    for (const Row* row : most_used(command)) out += fmt::format("{:<{}}{}\n", brief_left(*row), column, row->brief);
+    for (const Option* row : most_used(command)) column = std::max(column, brief_left(*row).size() + 2);
+    for (const Option* row : most_used(command)) out += fmt::format("{:<{}}{}\n", brief_left(*row), column, row->brief);
     out += "\nExamples:\n";
     for (std::size_t k = 0; k < std::min(kExamples, command.examples().size()); ++k)
         out += example_text(command.examples()[k]);
@@ -115,7 +116,7 @@ std::string help_text(const Command& command) {
             add_entry(out, "  " + command.input().name, command.input().meaning);
         if (group == groups_in_order(command).front())
             add_entry(out, "  @FILE", "more arguments, one a line or separated by NUL; @- is standard input");
-        for (const Row& row : command.rows()) {
+        for (const Option& row : command.options()) {
             if (row.group == group && !row.hidden) add_entry(out, left_column(row, row.value), explanation(row));
         }
     }
@@ -132,7 +133,7 @@ std::string help_text(const Command& command) {
 
 std::string option_list(const Command& command) {
     std::string out;
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.hidden) continue;
         out += fmt::format("{}\t{}\t{}\t{}\n", join(row.names, ","), row.value, row.preset,
                            join(names_of(row.words), ","));

@@ -13,7 +13,7 @@ namespace tex::cli {
 namespace {
 
 // What the option's parser asks for, whatever parts its value has.
-std::optional<AskedNumber> asked_by(const Row& row) {
+std::optional<AskedNumber> asked_by(const Option& row) {
     for (const char* const text : {"0", "0,0", "0,0,0", "0x0", "0/0"}) {
         const auto asked = asked_number([&] { row.take(text); });
         if (asked) return asked;
@@ -27,7 +27,7 @@ bool has_parts(const std::string& value) {
            value.find("[x") != std::string::npos || value == "LIST";
 }
 
-bool reads_names(const Row& row) {
+bool reads_names(const Option& row) {
     const auto names = [&](const char* word) { return row.value.find(word) != std::string::npos; };
     if (!row.words.empty()) return false;
     return row.completes == Completes::files || row.completes == Completes::directories || names("FILE") ||
@@ -35,7 +35,7 @@ bool reads_names(const Row& row) {
 }
 
 // Whether the option takes this text.
-bool takes(const Row& row, const std::string& text) {
+bool takes(const Option& row, const std::string& text) {
     try {
         row.take(text);
     } catch (const UsageError&) {
@@ -44,7 +44,7 @@ bool takes(const Row& row, const std::string& text) {
     return true;
 }
 
-std::string type_of(const Row& row, const std::optional<AskedNumber>& asked) {
+std::string type_of(const Option& row, const std::optional<AskedNumber>& asked) {
     if (row.value.empty()) return "flag";
     if (asked && row.completes == Completes::files) return "text";  // a number or a file
     if (!row.words.empty() && !asked && !has_parts(row.value)) return takes(row, "0") ? "text" : "word";
@@ -75,7 +75,7 @@ void add_range(Json& json, const AskedNumber& asked) {
 }
 
 // The default, as a value where it is one. Otherwise it is a clause, or depends on the file.
-void add_default(Json& json, const Row& row, const std::string& type, const std::optional<AskedNumber>& asked) {
+void add_default(Json& json, const Option& row, const std::string& type, const std::optional<AskedNumber>& asked) {
     if (type == "flag") json["default"] = false;
     if (row.preset.empty()) return;
     const std::vector<std::string> names = names_of(row.words);
@@ -92,7 +92,7 @@ void add_default(Json& json, const Row& row, const std::string& type, const std:
     json[is_value ? "default" : "default_text"] = row.preset;
 }
 
-Json words_json(const Row& row) {
+Json words_json(const Option& row) {
     Json words = Json::array();
     for (const Word& word : row.words) {
         words.push_back({{"word", word.name}});
@@ -101,7 +101,7 @@ Json words_json(const Row& row) {
     return words;
 }
 
-Json option_json(const Row& row) {
+Json option_json(const Option& row) {
     const auto asked = row.value.empty() || reads_names(row) ? std::nullopt : asked_by(row);
     const std::string type = type_of(row, asked);
     Json json = {{"names", row.names}, {"type", type}};
@@ -124,7 +124,7 @@ std::string help_json(const Command& command) {
     for (const std::string& usage : command.usages()) json["usage"].push_back(command.name() + " [OPTIONS] " + usage);
     json["input"] = {{"value", command.input().name}, {"text", command.input().meaning}};
     json["options"] = Json::array();
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (!row.hidden) json["options"].push_back(option_json(row));
     }
     json["examples"] = Json::array();

@@ -9,7 +9,7 @@
 
 namespace tex::cli {
 
-// --help --json: one line, as normal-maps(7) describes it. Calls Row::take of options, so the command's targets mean
+// --help --json: one line, as normal-maps(7) describes it. Calls Option::take of options, so the command's targets mean
 // nothing afterwards.
 [[nodiscard]] std::string help_json(const Command& command);
 

@@ -12,10 +12,10 @@ namespace tex::cli {
 void ConversionOptions::add(Command& command) {
     spaces.add(command);
     command.group("Conversion");
-    Row& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
-                                  [this](const std::string& text) {
-                                      convert_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
-                                  });
+    Option& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
+                                     [this](const std::string& text) {
+                                         convert_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
+                                     });
     padding.words = {{"all", "the whole map"}};
     padding.completes = Completes::words;
     padding.preset = "all";

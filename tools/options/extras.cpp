@@ -81,7 +81,7 @@ void ExtraOptions::take(const std::string& text, const ExtraOption& row) {
 }
 
 void ExtraOptions::add_option(Command& command, const ExtraOption& row) {
-    Row& option =
+    Option& option =
         command.option(row.option, "WHAT", row.help, [this, &row](const std::string& text) { take(text, row); });
     option.preset = "none";
     if (reads_ != nullptr) {
@@ -101,12 +101,13 @@ void ExtraOptions::add(Command& command, OutputOptions& output, const NormalsRea
     reads_ = reads;
     command.group("Data beside the normals");
     for (const ExtraOption& row : kExtraOptions) add_option(command, row);
-    Row& kind = command.option("--kind", "KIND[,KIND]", "what blue and alpha hold, which decides about smaller levels",
-                               [this](const std::string& text) {
-                                   const auto [first, second] = cut(text, ',');
-                                   blue_kind_ = parse_word(first, kExtraKindNames);
-                                   alpha_kind_ = second.empty() ? *blue_kind_ : parse_word(second, kExtraKindNames);
-                               });
+    Option& kind =
+        command.option("--kind", "KIND[,KIND]", "what blue and alpha hold, which decides about smaller levels",
+                       [this](const std::string& text) {
+                           const auto [first, second] = cut(text, ',');
+                           blue_kind_ = parse_word(first, kExtraKindNames);
+                           alpha_kind_ = second.empty() ? *blue_kind_ : parse_word(second, kExtraKindNames);
+                       });
     kind.words = words_of(kExtraKindNames);
     kind.preset = "mask, or as the layout says";
     kind.completes = Completes::words;

@@ -30,9 +30,9 @@ namespace fs = std::filesystem;
 
 void FileOptions::add(Command& command, bool joins) {
     command.group("Files");
-    Row& row = command.output_file(output, "-o,--output",
-                                   joins ? "the output, of all inputs together; - is standard output"
-                                         : "the output of a single input; - is standard output");
+    Option& row = command.output_file(output, "-o,--output",
+                                      joins ? "the output, of all inputs together; - is standard output"
+                                            : "the output of a single input; - is standard output");
     row.often(1, joins ? "the output, of all inputs together" : "the output of a single input");
     row.take = [take = row.take](const std::string& text) {  // /dev/stdout and its other names
         take(named_descriptor(text) == kStandardOutput ? "-" : text);

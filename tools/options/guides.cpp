@@ -54,8 +54,8 @@ void Guides::fill(TransferInputs& inputs) const {
 }
 
 void GuideOptions::add(Command& command) {
-    const auto file = [&](std::string& pattern, const std::string& name, std::string help) -> Row& {
-        Row& row = command.option(name, "FILE", std::move(help), [&pattern](const std::string& text) {
+    const auto file = [&](std::string& pattern, const std::string& name, std::string help) -> Option& {
+        Option& row = command.option(name, "FILE", std::move(help), [&pattern](const std::string& text) {
             if (text.empty() || text == "-") throw UsageError("needs a file");
             if (NamePattern(text).uses("level") || NamePattern(text).uses("format"))
                 throw UsageError("{level} and {format} have no meaning here");

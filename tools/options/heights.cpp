@@ -25,7 +25,7 @@ void ColorGroup::add(Command& command) {
     command.text(color.space, "--color-space", "NAME",
                  "the colour space of the file's heights, which become linear; without a configuration, sRGB or "
                  "linear");
-    Row& config = command.text(color.config, "--ocio-config", "FILE", "the OpenColorIO configuration");
+    Option& config = command.text(color.config, "--ocio-config", "FILE", "the OpenColorIO configuration");
     config.preset = "$OCIO";
     config.completes = Completes::files;
     command.check([this, &command] {
@@ -68,7 +68,7 @@ void StrengthOptions::add(Command& command, bool can_measure) {
     const std::vector<std::string> rivals = {"--height-range", "--uv-height"};
     const std::string brief = "the height of value 1.0 in texels";
     if (can_measure) {
-        Row& row = command.option("--bumpiness", "B", help + "; or a word", [this](const std::string& text) {
+        Option& row = command.option("--bumpiness", "B", help + "; or a word", [this](const std::string& text) {
             measured = text == "auto";
             if (!measured) bumpiness = parse_float(text);
         });
@@ -119,7 +119,7 @@ Strength StrengthOptions::strength(Extent extent) const {
 }
 
 void KernelOption::add(Command& command, std::string help) {
-    Row& row = command.option("--kernel", "K", std::move(help), [this](const std::string& text) {
+    Option& row = command.option("--kernel", "K", std::move(help), [this](const std::string& text) {
         const auto [name, sigma] = cut(text, ':');
         bake.kernel = parse_word(name, kGradientKernelNames);
         if (text.find(':') == std::string::npos) return;
@@ -135,13 +135,14 @@ void KernelOption::add(Command& command, std::string help) {
 }
 
 void HeightGroup::add(Command& command) {
-    Row& channel = command.option("--channel", "C", "which channel holds the heights, also by its name in an EXR file",
-                                  [this](const std::string& text) {
-                                      const auto known = find_by_name(kHeightChannelNames, text);
-                                      if (text.empty()) throw UsageError("needs a value that is not empty");
-                                      options.channel = known.value_or(HeightChannel::automatic);
-                                      options.channel_name = known ? std::string() : text;
-                                  });
+    Option& channel =
+        command.option("--channel", "C", "which channel holds the heights, also by its name in an EXR file",
+                       [this](const std::string& text) {
+                           const auto known = find_by_name(kHeightChannelNames, text);
+                           if (text.empty()) throw UsageError("needs a value that is not empty");
+                           options.channel = known.value_or(HeightChannel::automatic);
+                           options.channel_name = known ? std::string() : text;
+                       });
     channel.words = words_of(kHeightChannelNames);
     channel.completes = Completes::words;
     channel.preset = name_of(kHeightChannelNames, options.channel);

@@ -53,9 +53,9 @@ Result<std::vector<Float4>> tangents_of(const MeshPart& part, int uv_set, const 
 
 }  // namespace
 
-Row& HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files, const std::string& name,
-                                  std::string help) {
-    Row& row = command.option(name, "[NAME=]FILE", std::move(help), [&files](const std::string& text) {
+Option& HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files, const std::string& name,
+                                     std::string help) {
+    Option& row = command.option(name, "[NAME=]FILE", std::move(help), [&files](const std::string& text) {
         const auto [before, after] = cut(text, '=');
         const bool is_named = text.find('=') != std::string::npos;
         const Assigned added{is_named ? std::string(before) : std::string(), is_named ? std::string(after) : text};
@@ -76,7 +76,7 @@ Row& HighDetailOptions::add_files(Command& command, std::vector<Assigned>& files
 void HighDetailOptions::add(Command& command, std::function<bool()> implies_own) {
     implies_own_ = std::move(implies_own);
     command.group("Pictures on the high mesh");
-    Row& row =
+    Option& row =
         add_files(command, normals_, "--high-normals",
                   "its own normal map, of all parts or of those with this material; may be repeated; own: those of its "
                   "materials (glTF); off: none");
@@ -89,9 +89,10 @@ void HighDetailOptions::add(Command& command, std::function<bool()> implies_own)
     };
     add_files(command, colors_, "--high-color",
               "a texture for --color-out, of all parts or of those with this material; may be repeated");
-    Row& alpha = add_files(command, alphas_, "--high-alpha",
-                           "where this is below its cutoff, rays pass the high mesh, or its parts with this material; "
-                           "may be repeated; off: it is solid");
+    Option& alpha =
+        add_files(command, alphas_, "--high-alpha",
+                  "where this is below its cutoff, rays pass the high mesh, or its parts with this material; "
+                  "may be repeated; off: it is solid");
     alpha.preset = "of materials with alphaMode MASK (glTF) or map_d (OBJ), their own";
     alpha.take = [this, take = alpha.take](const std::string& text) {
         if (text == "off")

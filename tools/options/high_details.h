@@ -65,7 +65,7 @@ private:
         std::string pattern;
     };
 
-    static Row& add_files(Command& command, std::vector<Assigned>& files, const std::string& name, std::string help);
+    static Option& add_files(Command& command, std::vector<Assigned>& files, const std::string& name, std::string help);
     [[nodiscard]] static const Assigned* find(const std::vector<Assigned>& files, const std::string& material);
     [[nodiscard]] static Result<void> check(const std::vector<Assigned>& files, const HighParts& high,
                                             const std::string& option);

@@ -68,14 +68,14 @@ void HighParts::add_places(const std::vector<MeshPart>& added, std::vector<PartP
 
 void HighMeshes::add(Command& command) {
     command.group("High mesh");
-    Row& row = command.option("--high", "PATTERN",
-                              "the mesh that rays hit, for each input: a file, or a pattern as --name; may be repeated",
-                              [this](const std::string& text) {
-                                  if (text.empty() || text == "-") throw UsageError("needs a file");
-                                  if (NamePattern(text).uses("level") || NamePattern(text).uses("format"))
-                                      throw UsageError("{level} and {format} have no meaning here");
-                                  patterns_.push_back(text);
-                              });
+    Option& row = command.option(
+        "--high", "PATTERN", "the mesh that rays hit, for each input: a file, or a pattern as --name; may be repeated",
+        [this](const std::string& text) {
+            if (text.empty() || text == "-") throw UsageError("needs a file");
+            if (NamePattern(text).uses("level") || NamePattern(text).uses("format"))
+                throw UsageError("{level} and {format} have no meaning here");
+            patterns_.push_back(text);
+        });
     row.completes = Completes::files;
     row.repeatable = true;
     row.preset = "the inputs after the first one";

@@ -29,7 +29,7 @@ std::pair<float, float> parse_pair(const std::string& text, Range range, bool sq
 
 void LayerOptions::add(Command& command) {
     command.group("Layers (each option once for all details, or once for each)");
-    Row& detail =
+    Option& detail =
         command.option("--detail", "FILE", "a detail map; all inputs are then bases", [this](const std::string& text) {
             if (text.empty()) throw UsageError("needs a value that is not empty");
             details_.push_back(text);
@@ -43,8 +43,9 @@ void LayerOptions::add(Command& command) {
         .often(2, "make the detail steeper or flatter")
         .repeatable = true;
     add_placement(command);
-    Row& mask = command.option("--mask", "FILE[:CHANNEL]", "a mask for the detail: white shows all of it",
-                               [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
+    Option& mask =
+        command.option("--mask", "FILE[:CHANNEL]", "a mask for the detail: white shows all of it",
+                       [this](const std::string& text) { mask_.values.push_back(parse_channel_file(text)); });
     mask.often(2, "a mask for the detail: white shows all of it").completes = Completes::files;
     mask.repeatable = true;
     command
@@ -53,19 +54,19 @@ void LayerOptions::add(Command& command) {
                     strength_.values.push_back(parse_float(text, range_of(&Layer::strength)));
                 })
         .repeatable = true;
-    Row& y = add_y_in(command, "--detail-y-in", "which way green points in the detail",
-                      [this](YIn given) { y_in_.values.emplace_back(given); });
+    Option& y = add_y_in(command, "--detail-y-in", "which way green points in the detail",
+                         [this](YIn given) { y_in_.values.emplace_back(given); });
     y.preset = "as the file says, else as --y-in";
     y.repeatable = true;
 }
 
 void LayerOptions::add_placement(Command& command) {
-    Row& tiling = command.option(
+    Option& tiling = command.option(
         "--tiling", "X[,Y]", "how often the detail repeats across the base",
         [this](const std::string& text) { tiling_.values.push_back(parse_pair(text, kTilingRange, true)); });
     tiling.often(2, "how often the detail repeats across the base").preset = "1,1";
     tiling.repeatable = true;
-    Row& offset = command.option(
+    Option& offset = command.option(
         "--offset", "X,Y", "move the detail, in its own widths and heights; y is up",
         [this](const std::string& text) { offset_.values.push_back(parse_pair(text, kOffsetRange, false)); });
     offset.preset = "0,0";
@@ -74,8 +75,8 @@ void LayerOptions::add_placement(Command& command) {
         .option("--rotate", "DEGREES", "turn the detail counter-clockwise, its vectors too",
                 [this](const std::string& text) { rotation_.values.push_back(parse_float(text)); })
         .repeatable = true;
-    Row& wrap = command.option("--detail-wrap", "W[,W]", "what lies beyond the detail's border",
-                               [this](const std::string& text) { wrap_.values.push_back(parse_wraps(text)); });
+    Option& wrap = command.option("--detail-wrap", "W[,W]", "what lies beyond the detail's border",
+                                  [this](const std::string& text) { wrap_.values.push_back(parse_wraps(text)); });
     wrap.words = words_of(kWrapNames);
     wrap.completes = Completes::words;
     wrap.preset = name_of(kWrapNames, Layer{}.wrap_x);

@@ -45,10 +45,10 @@ Result<RoughnessChain> averages(Plane<float> values, const MipOptions& mips, con
 
 }  // namespace
 
-Row& MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
+Option& MapOutput::add(Command& command, const FileOptions& files, std::string name, std::string help) {
     files_ = &files;
     name_ = std::move(name);
-    Row& row = command.output_file(pattern_, name_, std::move(help));
+    Option& row = command.output_file(pattern_, name_, std::move(help));
     command.check([this, &command] {
         if (command.given(name_) && pattern_.empty()) throw UsageError(name_ + ": needs a value that is not empty");
         if (pattern_ == "-") throw UsageError(name_ + ": needs a file, not standard output");

@@ -20,7 +20,7 @@ namespace tex::cli {
 class MapOutput {
 public:
     // `files` must outlive this. `name`: the option.
-    Row& add(Command& command, const FileOptions& files, std::string name, std::string help);
+    Option& add(Command& command, const FileOptions& files, std::string name, std::string help);
 
     [[nodiscard]] bool is_given() const { return !pattern_.empty(); }
 

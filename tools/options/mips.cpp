@@ -22,8 +22,8 @@ std::pair<Wrap, Wrap> parse_wraps(const std::string& text) {
 }
 
 void WrapOptions::add(Command& command, std::string help) {
-    Row& row = command.option("--wrap", "W[,W]", std::move(help),
-                              [this](const std::string& text) { std::tie(x, y) = parse_wraps(text); });
+    Option& row = command.option("--wrap", "W[,W]", std::move(help),
+                                 [this](const std::string& text) { std::tie(x, y) = parse_wraps(text); });
     row.often(7, "what lies beyond the border: repeat, clamp or mirror").words = words_of(kWrapNames);
     row.completes = Completes::words;
     row.preset = name_of(kWrapNames, x);
@@ -32,7 +32,7 @@ void WrapOptions::add(Command& command, std::string help) {
 void MipChainOptions::add(Command& command, bool with_keep, std::string levels_default) {
     with_keep_ = with_keep;
     command.group("Mip chain");
-    Row& row = command.option(
+    Option& row = command.option(
         "--mips", "N", "levels, counting the base level: a number, or a word",
         [this, with_keep](const std::string& text) {
             keep = with_keep && text == "keep";

@@ -143,8 +143,8 @@ void add_length_in(Command& command, std::optional<LengthIn>& length_in) {
         .preset = "nothing: they are 1";
 }
 
-Row& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set) {
-    Row& y = command.option(name, "AXIS", std::move(help), [set = std::move(set)](const std::string& text) {
+Option& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set) {
+    Option& y = command.option(name, "AXIS", std::move(help), [set = std::move(set)](const std::string& text) {
         std::vector<std::string> names = names_of(words_of(kYAxisNames));
         names.emplace_back(kMeasured);
         const std::size_t comma = text.find(',');
@@ -171,7 +171,7 @@ void NormalsReader::add(Command& command, bool with_keep_length, bool keeps_extr
              })
         .often(6, "which way green points in the input: up or down")
         .preset = "as the file says, else up";
-    Row& row =
+    Option& row =
         command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
                        [this](const std::string& text) {
                            swizzle = parse_swizzle(text, {kRedOrAlpha});

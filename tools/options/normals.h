@@ -57,7 +57,7 @@ struct YIn {
 };
 
 // An option whose value becomes a YIn, which `set` gets.
-Row& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set);
+Option& add_y_in(Command& command, const char* name, std::string help, std::function<void(YIn)> set);
 
 // How one file is read, if this differs from the options.
 struct Reading {

@@ -131,13 +131,14 @@ void OutputOptions::add_rdo(Command& command) {
 }
 
 void OutputOptions::add_engines(Command& command) {
-    Row& row = command.option("--for", "ENGINE[,ENGINE]", "file type, format, y and levels as the engine imports them",
-                              [this, &command](const std::string& text) {
-                                  if (text == "list")
-                                      command.answer(engine_table());
-                                  else
-                                      engines = parse_engines(text);
-                              });
+    Option& row =
+        command.option("--for", "ENGINE[,ENGINE]", "file type, format, y and levels as the engine imports them",
+                       [this, &command](const std::string& text) {
+                           if (text == "list")
+                               command.answer(engine_table());
+                           else
+                               engines = parse_engines(text);
+                       });
     row.often(5, "what an engine wants: unity, unreal, godot ...").words = engine_words();
     row.completes = Completes::words;
 }

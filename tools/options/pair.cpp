@@ -33,7 +33,7 @@ void PairOptions::add(Command& command) {
     command.group("Limits");
     const auto add_limit = [&](std::optional<double>& limit, const char* name, const char* figure, int rank) {
         const std::string help = fmt::format("fail (exit 1) if the {} is greater", figure);
-        Row& row = command.option(name, "DEGREES", help, [&limit](const std::string& text) {
+        Option& row = command.option(name, "DEGREES", help, [&limit](const std::string& text) {
             limit = parse_double(text, {0.0, 180.0});
         });
         if (rank > 0) row.often(rank, help);

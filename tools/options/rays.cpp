@@ -28,10 +28,10 @@ Reach parse_reach(const std::string& text) {
     return {Reach::Unit::absolute, parse_double(text, kNotNegative)};
 }
 
-Row& add_reach(Command& command, Reach& reach, const std::string& name, std::string help, std::string automatic,
-               std::string preset) {
-    Row& row = command.option(name, "DISTANCE", std::move(help),
-                              [&reach](const std::string& text) { reach = parse_reach(text); });
+Option& add_reach(Command& command, Reach& reach, const std::string& name, std::string help, std::string automatic,
+                  std::string preset) {
+    Option& row = command.option(name, "DISTANCE", std::move(help),
+                                 [&reach](const std::string& text) { reach = parse_reach(text); });
     row.words = {{"auto", std::move(automatic)}};
     row.completes = Completes::words;
     row.preset = std::move(preset);
@@ -122,10 +122,10 @@ void RayOptions::add_second(Command& command) {
 
 void RayOptions::add_coverage(Command& command) {
     command.group("Coverage");
-    Row& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
-                                  [this](const std::string& text) {
-                                      transfer_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
-                                  });
+    Option& padding = command.option("--padding", "N", "texels to fill around each chart: a number, or the word",
+                                     [this](const std::string& text) {
+                                         transfer_.padding = text == "all" ? kPadAll : parse_int(text, 0, kMaxExtent);
+                                     });
     padding.words = {{"all", "the whole map"}};
     padding.completes = Completes::words;
     padding.preset = "all";
@@ -236,11 +236,11 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
     occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed")
         .often(2, "write ambient occlusion");
-    Row& into = command.option("--occlusion-into", "WHERE",
-                               "put ambient occlusion into the output:", [this](const std::string& text) {
-                                   if (text != "model") throw UsageError("must be model");
-                                   occlusion_into_model_ = true;
-                               });
+    Option& into = command.option("--occlusion-into", "WHERE",
+                                  "put ambient occlusion into the output:", [this](const std::string& text) {
+                                      if (text != "model") throw UsageError("must be model");
+                                      occlusion_into_model_ = true;
+                                  });
     into.words = {{"model", "into the red of each material's texture of roughness, or a texture of its own"}};
     into.completes = Completes::words;
     bent_.add(command, files, "--bent-out", "write bent normals, the mean directions that are open, in tangent space");

@@ -90,7 +90,7 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
                 "--roughness-out makes that",
                 [this](const std::string& text) { take_into(text); })
         .completes = Completes::files;
-    Row& input =
+    Option& input =
         command.option("--roughness-in", "FILE|VALUE", "the material's own roughness, FILE[:CHANNEL] or a number",
                        [this](const std::string& text) { take_input(text); });
     input.preset = "0, or what --roughness-into has there";

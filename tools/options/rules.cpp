@@ -46,7 +46,7 @@ void RuleOptions::add(Command& command) {
                 })
         .often(1, "demand format=bc5, mips=full, y=up ... of every file")
         .repeatable = true;
-    Row& row = command.option(
+    Option& row = command.option(
         "--for", "ENGINE[,ENGINE]", "demand what engines read, and their direction of green",
         [this](const std::string& text) {
             engines_ = parse_engines(text);
@@ -65,11 +65,11 @@ void RuleOptions::add(Command& command) {
             names.push_back(text);
         };
     };
-    Row& layout = command.option("--swizzle", "S", "which channels hold x and y: labpbr, rg, dxt5nm ..., or ag",
-                                 [this](const std::string& text) {
-                                     swizzle_ = parse_swizzle(text);
-                                     given_.occlusion_in_blue = has_occlusion_in_blue(text);
-                                 });
+    Option& layout = command.option("--swizzle", "S", "which channels hold x and y: labpbr, rg, dxt5nm ..., or ag",
+                                    [this](const std::string& text) {
+                                        swizzle_ = parse_swizzle(text);
+                                        given_.occlusion_in_blue = has_occlusion_in_blue(text);
+                                    });
     layout.words = swizzle_words();
     layout.preset = "auto";
     layout.completes = Completes::words;
@@ -90,7 +90,7 @@ void RuleOptions::add(Command& command) {
     command.text(config_, "--config", "FILE", "read requirements, rules and severities from a TOML file")
         .often(1, "read requirements and rules from a TOML file")
         .completes = Completes::files;
-    Row& root =
+    Option& root =
         command.text(root_, "--root", "DIR", "the folder that patterns in the file of --config are relative to");
     root.completes = Completes::directories;
     root.preset = "that of the file";

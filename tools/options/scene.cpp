@@ -92,7 +92,7 @@ void SceneOptions::add(Command& command) {
 
 void SceneOptions::add_shape(Command& command) {
     command.group("Shape");
-    Row& row = command.option("--shape", "S", "what the map is put on", [this](const std::string& text) {
+    Option& row = command.option("--shape", "S", "what the map is put on", [this](const std::string& text) {
         const auto [word, tiles] = cut(text, ':');
         if (word != "tiled" || tiles.empty()) {
             preview.shape = parse_word(text, kShapeNames);
@@ -185,11 +185,11 @@ void SceneOptions::add_parallax(Command& command) {
     command.choice(deband, "--deband", "WHEN", kDebandNames,
                    "regain the bits of --height that rounding to 8 bits took away");
     check_needs(command, "--height", {"--deband"});
-    Row& row = command.option("--parallax", "P|auto", "height of white over black in widths of the map",
-                              [this, &parallax](const std::string& text) {
-                                  parallax_of_map = text == "auto";
-                                  parallax.amount = parallax_of_map ? 0.0f : parse_float(text, {});
-                              });
+    Option& row = command.option("--parallax", "P|auto", "height of white over black in widths of the map",
+                                 [this, &parallax](const std::string& text) {
+                                     parallax_of_map = text == "auto";
+                                     parallax.amount = parallax_of_map ? 0.0f : parse_float(text, {});
+                                 });
     row.words = {{"auto", "as high as the normals show"}};
     row.completes = Completes::words;
     row.preset = fmt::format("{}", parallax.amount);
@@ -205,7 +205,7 @@ void SceneOptions::add_parallax(Command& command) {
 
 void SceneOptions::add_sampling(Command& command) {
     command.group("Sampling");
-    Row& row = command.option(
+    Option& row = command.option(
         "--wrap", "W[,W]", "what lies beyond the border of all maps; two words set x and y separately",
         [this](const std::string& text) { std::tie(preview.wrap_x, preview.wrap_y) = parse_wraps(text); });
     row.words = {

@@ -32,7 +32,7 @@ Execution step(const Execution& whole, std::size_t k, std::size_t count) {
 }  // namespace
 
 void SheetOptions::add_shows(Command& command) {
-    Row& row =
+    Option& row =
         command.option("--show", "WHAT[,WHAT...]", "what pictures show, side by side", [this](const std::string& text) {
             shows_.clear();
             for (const std::string& word : split(text, ',')) shows_.push_back(parse_word(word, kShowNames));

@@ -30,8 +30,8 @@ IntegrateOptions integrate_options_for(const SourceInfo& info) {
 
 void StoredHeights::add(Command& command) {
     command.group("Heights");
-    Row& row = command.option("--heights", "fit|raw|LOW,HIGH", "which heights become 0 and 1 in the file",
-                              [this](const std::string& text) { parse(text); });
+    Option& row = command.option("--heights", "fit|raw|LOW,HIGH", "which heights become 0 and 1 in the file",
+                                 [this](const std::string& text) { parse(text); });
     row.words = {{"fit", "the lowest and the highest of each map"},
                  {"raw", "the lowest becomes 0; the strength alone sets the rest"}};
     row.completes = Completes::words;

@@ -34,7 +34,7 @@ std::string value_text(const OptionSetting& setting) {
 }
 
 // Whether the step sets an option that is used instead of this one.
-bool has_rival(const StepSettings& step, const Row& row) {
+bool has_rival(const StepSettings& step, const Option& row) {
     return std::any_of(row.rivals.begin(), row.rivals.end(), [&](const std::string& rival) {
         return find_setting(step.settings, rival.substr(2)) != nullptr;
     });
@@ -105,7 +105,7 @@ std::string settings_text(const StepSettings& step, const OutputSettings* output
         decided == nullptr ? std::map<std::string, std::string>()
                            : decided_values(decided->converter, decided->task, decided->console);
     std::string text;
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.hidden || row.group == kHelpGroup || row.group == "Files" || row.group == "Terrains" ||
             row.group == "Running")
             continue;

@@ -29,8 +29,8 @@ constexpr const char* kOutputGroup = "Output";
 constexpr const char* kLevelsGroup = "Mip chain";
 constexpr const char* kDataGroup = "Data beside the normals";
 
-const Row* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
-    for (const Row& row : command.rows()) {
+const Option* row_of(const Command& command, const std::string& key, const std::vector<std::string>& groups) {
+    for (const Option& row : command.options()) {
         const bool is_in = std::find(groups.begin(), groups.end(), row.group) != groups.end();
         if (is_in && !row.hidden && row.name() == "--" + key) return &row;
     }
@@ -40,7 +40,7 @@ const Row* row_of(const Command& command, const std::string& key, const std::vec
 // The groups of options that a manifest can set: those that say how normals are made.
 std::vector<std::string> groups_of(const Command& command) {
     std::vector<std::string> groups;
-    for (const Row& row : command.rows()) {
+    for (const Option& row : command.options()) {
         if (row.group != kHelpGroup && row.group != "Files" && row.group != "Running") groups.push_back(row.group);
     }
     return groups;
@@ -59,7 +59,7 @@ std::string key_advice(const std::string& key, const std::vector<std::string>& k
 constexpr int kAnyTile = 1001;  // to try whether options fit tiles
 
 // Whether a value of such an option is a file: it may be a word or a number, too.
-bool is_file(const std::string& value, const Row& row) {
+bool is_file(const std::string& value, const Option& row) {
     const std::vector<std::string> words = names_of(row.words);
     return std::find(words.begin(), words.end(), value) == words.end() &&
            value.find_first_not_of("+-.0123456789eE") != std::string::npos;
@@ -147,11 +147,11 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
     const auto fail = [&](const std::string& reason) {
         fail_at(manifest_.path, setting.place, fmt::format("{}: {}", printable(setting.key), reason));
     };
-    const Row* row = row_of(command, setting.key, groups);
+    const Option* row = row_of(command, setting.key, groups);
     if (row == nullptr && setting.is_default && row_of(command, setting.key, groups_of(command)) != nullptr) return;
     if (row == nullptr) {
         std::vector<std::string> known;
-        for (const Row& other : command.rows()) {
+        for (const Option& other : command.options()) {
             if (row_of(command, other.name().substr(2), groups) == &other) known.push_back(other.name().substr(2));
         }
         fail(fmt::format("{} has no such option here{}", command.name(), key_advice(setting.key, known)));
@@ -172,7 +172,7 @@ void Recipe::add_option(const OptionSetting& setting, const Command& command, co
 // The argument as the command gets it: files are below the root.
 std::string Recipe::with_root(const std::string& argument, const Command& command) const {
     const auto [name, value] = cut(argument, '=');
-    const Row* const row = row_of(command, name.substr(2), groups_of(command));
+    const Option* const row = row_of(command, name.substr(2), groups_of(command));
     // {dir} is that of the input, which is below the root. Files to write get their places later.
     const bool is_below = !root_.empty() && row != nullptr && row->completes == Completes::files && !row->writes &&
                           is_file(value, *row) && !fs::path(value).has_root_path() && !value.starts_with("{dir}");
@@ -226,7 +226,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
     // The first of several outputs has the maps beside it.
     const bool is_first = outputs_.empty();
     for (const OptionSetting& setting : step.settings) {
-        const Row* const row = row_of(table, setting.key, groups);
+        const Option* const row = row_of(table, setting.key, groups);
         const bool writes = row != nullptr && row->writes;
         if ((stays_behind(setting) || (writes && !is_last)) && !setting.is_default)
             fail_at(manifest_.path, setting.place, fmt::format("{}: only the last step can have it", setting.key));
@@ -261,7 +261,7 @@ ReadyCommand Recipe::ready(const StepSettings& step, const OutputSettings* outpu
         task.origin = "input";
         if (has_tile(out) && command.converter->makes_tiles()) task.tile = kAnyTile;
         for (const std::string& argument : command.arguments) {
-            const Row* const row = row_of(table, cut(argument, '=').first.substr(2), groups);
+            const Option* const row = row_of(table, cut(argument, '=').first.substr(2), groups);
             if (row != nullptr && row->writes) command.writes.push_back(row->name());
         }
         task.further = trial_places(command.program->command);
@@ -341,7 +341,7 @@ std::string Recipe::preset_of(const std::string& name) const {
     const std::string step = cut(name, ' ').first;
     for (std::size_t k = 0; k < rule_.steps.size(); ++k) {
         const Command& table = table_of(rule_.steps[k].command);
-        const Row* const row = row_of(table, name.substr(name.rfind(' ') + 1), groups_of(table));
+        const Option* const row = row_of(table, name.substr(name.rfind(' ') + 1), groups_of(table));
         if (rule_.steps[k].command == step && row != nullptr) return row->value.empty() ? "false" : row->preset;
     }
     return {};

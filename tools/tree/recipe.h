@@ -46,11 +46,12 @@ private:
 
 // A command whose options have been read.
 struct ReadyCommand {
-    std::shared_ptr<Program> program;      // without its table
-    Converter* converter = nullptr;        // the program
-    std::vector<std::string> arguments;    // the options as the manifest gives them, sorted by name
-    std::vector<std::string> writes = {};  // those of them that name files to write (Row::writes), such as --height-out
-    std::string extension = {};            // what an output name without an extension gets; else empty
+    std::shared_ptr<Program> program;    // without its table
+    Converter* converter = nullptr;      // the program
+    std::vector<std::string> arguments;  // the options as the manifest gives them, sorted by name
+    std::vector<std::string> writes =
+        {};                      // those of them that name files to write (Option::writes), such as --height-out
+    std::string extension = {};  // what an output name without an extension gets; else empty
 };
 
 // The files of an output, below the root or as paths.

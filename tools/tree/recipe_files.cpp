@@ -98,8 +98,8 @@ std::shared_ptr<const FurtherPlaces> Recipe::trial_places(const Command& command
     places.input = "name.png";
     places.path_for = [this, &command](const std::string& option, const std::string& name) {
         const fs::path whole = (fs::path(rule_.out_dir) / fs::path(name).relative_path()).lexically_normal();
-        const auto is_its_row = [&](const Row& row) { return row.name() == option; };
-        const auto row = std::find_if(command.rows().begin(), command.rows().end(), is_its_row);
+        const auto is_its_row = [&](const Option& row) { return row.name() == option; };
+        const auto row = std::find_if(command.options().begin(), command.options().end(), is_its_row);
         if (!NamePattern(row->given.back()).uses("dir") && *whole.begin() == "..") {
             throw UsageError(option,
                              fmt::format("{} leads out of the folder of the manifest", printable(slashed(whole))));

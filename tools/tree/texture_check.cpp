@@ -17,7 +17,7 @@ namespace tex::cli {
 namespace {
 
 // Options that select rules or set a limit. The others of the two groups read files or print texts.
-bool is_key(const Row& row) {
+bool is_key(const Option& row) {
     if (row.group == "Limits") return true;
     return row.group == "Rules" && (row.repeatable || row.completes == Completes::words) && !row.value.empty();
 }
@@ -29,7 +29,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
     rules_.add(command_);
     limits_.add(command_);
     std::vector<std::string> known, arguments;
-    for (const Row& row : command_.rows()) {
+    for (const Option& row : command_.options()) {
         if (is_key(row)) known.push_back(row.name().substr(2));
     }
     known.emplace_back("inputs");
@@ -63,7 +63,7 @@ TextureCheck::TextureCheck(const Manifest& manifest, const Settings& settings, C
         fail_at(manifest.path, at == settings.end() ? settings.front().place : at->place,
                 fmt::format("check: {}", error.what()));
     }
-    for (const Row& row : command_.rows()) compares_ = compares_ || (row.group == "Limits" && !row.given.empty());
+    for (const Option& row : command_.options()) compares_ = compares_ || (row.group == "Limits" && !row.given.empty());
 }
 
 Result<void> TextureCheck::compare_with_source(const MadeTexture& made, const ReadOptions& read,
