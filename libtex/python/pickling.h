@@ -20,9 +20,9 @@ namespace tex::python {
 
 class Saver {
 public:
-    template <class T>
-    void operator()(const T& part) {
-        parts_.append(saved(part));
+    template <class... T>
+    void operator()(const T&... parts) {
+        (parts_.append(saved(parts)), ...);
     }
     [[nodiscard]] py::tuple parts() const { return parts_; }
 
@@ -39,9 +39,9 @@ public:
     explicit Loader(const py::handle& parts) : parts_(py::reinterpret_borrow<py::object>(parts)) {
         need(py::isinstance<py::tuple>(parts), "pickle", "damaged");
     }
-    template <class T>
-    void operator()(T& part) {
-        load(parts_[py::int_(next_++)], part);
+    template <class... T>
+    void operator()(T&... parts) {
+        (load(parts_[py::int_(next_++)], parts), ...);
     }
 
     template <class T>
@@ -151,188 +151,87 @@ void Loader::load(const py::object& from, T& value) {
 
 template <class F>
 void each_part(Ground& o, F& f) {
-    f(o.unit);
-    f(o.width);
-    f(o.height);
-    f(o.north);
-    f(o.north_up);
-    f(o.equator_radius);
-    f(o.pole_radius);
-    f(o.height_metres);
-    f(o.has_height_unit);
+    f(o.unit, o.width, o.height, o.north, o.north_up, o.equator_radius, o.pole_radius, o.height_metres,
+      o.has_height_unit);
 }
 
 template <class F>
 void each_part(Image& o, F& f) {
-    f(o.planes);
-    f(o.names);
-    f(o.sample);
-    f(o.bits);
-    f(o.normal_encoding);
-    f(o.normal_mark);
-    f(o.no_data);
-    f(o.stored);
-    f(o.scale);
-    f(o.offset);
-    f(o.remark);
-    f(o.ground);
-    f(o.ground_remark);
+    f(o.planes, o.names, o.sample, o.bits, o.normal_encoding, o.normal_mark, o.no_data, o.stored, o.scale, o.offset,
+      o.remark, o.ground, o.ground_remark);
 }
 
 template <class F>
 void each_part(HeightField& o, F& f) {
-    f(o.height);
-    f(o.bumpiness_x);
-    f(o.bumpiness_y);
-    f(o.wrap_x);
-    f(o.wrap_y);
-    f(o.ground);
+    f(o.height, o.bumpiness_x, o.bumpiness_y, o.wrap_x, o.wrap_y, o.ground);
 }
 
 template <class F>
 void each_part(Level& o, F& f) {
-    f(o.extent);
-    f(o.bytes);
+    f(o.extent, o.bytes);
 }
 
 template <class F>
 void each_part(Texture& o, F& f) {
-    f(o.format);
-    f(o.levels);
-    f(o.swizzle);
-    f(o.swizzle_known);
-    f(o.order_open);
-    f(o.y_axis);
-    f(o.y_known);
-    f(o.x_in_grey);
-    f(o.normal_encoding);
-    f(o.srgb);
-    f(o.zlib);
-    f(o.bumpiness_x);
-    f(o.bumpiness_y);
-    f(o.orientation);
-    f(o.turned);
-    f(o.trailing_bytes);
-    f(o.remarks);
+    f(o.format, o.levels, o.swizzle, o.swizzle_known, o.order_open, o.y_axis, o.y_known, o.x_in_grey, o.normal_encoding,
+      o.srgb, o.zlib, o.bumpiness_x, o.bumpiness_y, o.orientation, o.turned, o.trailing_bytes, o.remarks);
 }
 
 template <class F>
 void each_part(MeshPart& o, F& f) {
-    f(o.name);
-    f(o.mesh);
-    f(o.primitive);
-    f(o.material);
-    f(o.v_axis);
-    f(o.positions);
-    f(o.normals);
-    f(o.tangents);
-    f(o.uvs);
-    f(o.indices);
-    f(o.quads);
-    f(o.variants);
-    f(o.colors);
+    f(o.name, o.mesh, o.primitive, o.material, o.v_axis, o.positions, o.normals, o.tangents, o.uvs, o.indices, o.quads,
+      o.variants, o.colors);
 }
 
 template <class F>
 void each_part(MeshMaterial& o, F& f) {
-    f(o.name);
-    f(o.normal_map);
-    f(o.uv_set);
-    f(o.has_normal_map);
-    f(o.uv_transform);
-    f(o.mixed_transforms);
-    f(o.alpha_mode);
-    f(o.alpha_cutoff);
-    f(o.alpha);
+    f(o.name, o.normal_map, o.uv_set, o.has_normal_map, o.uv_transform, o.mixed_transforms, o.alpha_mode,
+      o.alpha_cutoff, o.alpha);
 }
 
 template <class F>
 void each_part(MeshNode& o, F& f) {
-    f(o.name);
-    f(o.mesh);
-    f(o.to_scene);
+    f(o.name, o.mesh, o.to_scene);
 }
 
 template <class F>
 void each_part(Mesh& o, F& f) {
-    f(o.parts);
-    f(o.materials);
-    f(o.nodes);
-    f(o.remarks);
+    f(o.parts, o.materials, o.nodes, o.remarks);
 }
 
 template <class F>
 void each_part(SelectedPiece& o, F& f) {
-    f(o.name);
-    f(o.material);
-    f(o.triangle);
+    f(o.name, o.material, o.triangle);
 }
 
 template <class F>
 void each_part(SelectedPart& o, F& f) {
-    f(o.part);
-    f(o.tangents);
-    f(o.source);
-    f(o.has_normal_map);
-    f(o.has_tangents);
-    f(o.has_transform);
-    f(o.rest);
-    f(o.pieces);
-    f(o.remarks);
+    f(o.part, o.tangents, o.source, o.has_normal_map, o.has_tangents, o.has_transform, o.rest, o.pieces, o.remarks);
 }
 
 template <class F>
 void each_part(Marks& o, F& f) {
-    f(o.extent);
-    f(o.side);
-    f(o.squares);
-    f(o.texels);
+    f(o.extent, o.side, o.squares, o.texels);
 }
 
 // A rule is its id, and a unit a word of the rule table's kind: both outlive the findings.
 template <class F>
 void each_part(Finding& o, F& f) {
     std::string id = o.rule != nullptr ? std::string(o.rule->id) : "", unit(o.unit);
-    f(id);
-    f(unit);
+    f(id, unit);
     if constexpr (std::is_same_v<F, Loader>) {
         o.rule = find_rule(id);
         need(o.rule != nullptr, "pickle", "there is no rule " + id);
         o.unit = kept_text(unit);
     }
-    f(o.severity);
-    f(o.message);
-    f(o.figure);
-    f(o.confidence);
-    f(o.regions);
-    f(o.has_texel);
-    f(o.column);
-    f(o.row);
-    f(o.fix_harms);
-    f(o.marks);
-    f(o.tone);
+    f(o.severity, o.message, o.figure, o.confidence, o.regions, o.has_texel, o.column, o.row, o.fix_harms, o.marks,
+      o.tone);
 }
 
 template <class F>
 void each_part(CheckReport& o, F& f) {
-    f(o.file);
-    f(o.map);
-    f(o.material);
-    f(o.findings);
-    f(o.explained);
-    f(o.format);
-    f(o.swizzle);
-    f(o.kind);
-    f(o.kind_confidence);
-    f(o.height_bytes);
-    f(o.extent);
-    f(o.levels);
-    f(o.more_data);
-    f(o.y);
-    f(o.pair);
-    f(o.occlusion);
-    f(o.seams);
-    f(o.y_on_mesh);
+    f(o.file, o.map, o.material, o.findings, o.explained, o.format, o.swizzle, o.kind, o.kind_confidence,
+      o.height_bytes, o.extent, o.levels, o.more_data, o.y, o.pair, o.occlusion, o.seams, o.y_on_mesh);
 }
 
 template <class T>
