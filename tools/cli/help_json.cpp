@@ -102,7 +102,8 @@ Json words_json(const Option& row) {
 }
 
 Json option_json(const Option& row) {
-    const auto asked = row.value.empty() || reads_names(row) ? std::nullopt : asked_by(row);
+    std::optional<AskedNumber> asked;
+    if (!row.value.empty() && !reads_names(row)) asked = asked_by(row);
     const std::string type = type_of(row, asked);
     Json json = {{"names", row.names}, {"type", type}};
     if (!row.value.empty()) json["value"] = row.value;
