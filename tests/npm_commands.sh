@@ -109,7 +109,8 @@ check 'help of all commands' every_help
 check 'the same outputs' same_outputs
 check 'an unknown option' said bake-normals waves.png --kernle sobel
 check 'a missing file' said check-normals absent.png
-check 'a damaged file' said pack-normals broken/short.png -o /nowhere/a.dds
+check 'a file in place of a folder' said bake-normals waves.png -o waves.png/x.png
+check 'a damaged file' said check-normals broken/N101-unreadable.dds
 check 'findings' said check-normals y_axis.png --require y=up
 check 'a report' said check-normals waves.png bricks.png --json
 check 'a folder that does not exist' said bake-normals waves.png -o /absent/folder/a.png
@@ -125,7 +126,8 @@ check 'SIGTERM at the start' ends_by SIGTERM 0.4
 
 check 'random command lines' node tests/npm_sets.mjs "$native" "$scratch/bin" samples "${2:-500}"
 
-# The tests of the commands, but those named in npm_exceptions.txt.
+# The tests of the commands, but those named in npm_exceptions.txt, which says how far this has been tried. An hour or
+# more, because each command starts node.
 if [ "${3:-}" = --cli ]; then
     except=$(sed -n 's/^\([^ #]\+\).*/\1/p' tests/npm_exceptions.txt | paste -sd:)
     TEX_PROGRAMS=$scratch/bin "$native/cli_tests" --gtest_filter="-$except" >"$scratch/cli.log" 2>&1 || true

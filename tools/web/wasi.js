@@ -62,14 +62,17 @@ export function foldersNamed(words) {
     for (const part of [word, ...word.split(/[=,:]/)]) {
       if (part === '' || part === '-' || part.includes('\0')) continue;
       const name = path.resolve(part.replace(/[*?[{].*$/s, '')); // a pattern begins in a folder
-      const status = fs.statSync(name, { throwIfNoEntry: false });
-      const whole = status && !status.isFile(); // a folder, or a device, whose neighbours are not wanted
-      const folder = whole ? name : path.dirname(name);
+      let folder = path.dirname(name);
+      try {
+        if (!fs.statSync(name).isFile()) folder = name; // a folder, or a device, whose neighbours are not wanted
+      } catch {
+        // It is to be made, or the command says what is wrong.
+      }
       folders.add(folder);
       try {
         folders.add(fs.realpathSync(folder));
       } catch {
-        // It is to be made.
+        // The same.
       }
     }
   }
