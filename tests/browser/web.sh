@@ -18,7 +18,7 @@ scratch=$(mktemp -d)
 browser=
 trap '[ -z "$browser" ] || kill "$browser" 2>/dev/null || true; wait; rm -rf "$scratch"' EXIT
 cp samples/web/*.{html,css,js} build/npm/package/commands.wasm tests/browser/web/* samples/{waves.png,crate_low.glb} \
-    samples/broken/N201-not-unit-length.png "$scratch"
+    samples/broken/N301-srgb-decoded.png "$scratch"
 cd "$scratch"
 /usr/bin/convert -size 2048x2048 plasma:fractal -colorspace gray large.png
 mkdir native
@@ -26,7 +26,7 @@ export PATH=$build:$PATH
 bake-normals waves.png -o native/baked.dds --format bc5 --y up --bumpiness 6 --quiet
 pack-normals native/baked.dds -o native/packed.ktx2 --format astc-6x6 --y down --quiet
 pack-normals native/baked.dds -o native/flipped.png --format rgb16 --y down --quiet
-repair-normals N201-not-unit-length.png -o native/repaired.png --quiet
+repair-normals N301-srgb-decoded.png -o native/repaired.png --quiet
 (
     until (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do sleep 0.1; done
     exec chromium --headless --no-sandbox --disable-gpu --user-data-dir="$scratch/profile" \

@@ -79,8 +79,8 @@ async function test() {
   await press('pack');
   await save('flipped.png');
 
-  await drop('N201-not-unit-length.png');
-  expect($('list').textContent.includes('N201'), 'a finding');
+  await drop('N301-srgb-decoded.png');
+  expect($('list').textContent.includes('N301'), 'a finding');
   await press('repair');
   await save('repaired.png');
   await drop('crate_low.glb');
