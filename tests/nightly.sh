@@ -223,7 +223,7 @@ windows() {
 npm_package() {
     local status=0
     samples/packaging/npm.sh || return 1
-    counted npm tests/npm.sh 500 --cli || status=1
+    counted npm tests/npm.sh || status=1
     counted npm_browser tests/browser/npm.sh || status=1
     counted web tests/browser/web.sh || status=1
     return "$status"
