@@ -47,7 +47,7 @@ const cli::ProgramRow& program_of(const std::string& name) {
 bool has_option(const std::string& name, const std::string& option) {
     const cli::ProgramRow& row = program_of(name);
     const std::unique_ptr<cli::Program> program = row.make(row);
-    for (const cli::Row& each : program->command.rows()) {
+    for (const cli::Option& each : program->command.options()) {
         for (const std::string& one : each.names) {
             if (one == option) return true;
         }
