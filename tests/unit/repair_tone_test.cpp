@@ -47,6 +47,19 @@ Codes with_lightness_of(double by) {
     return codes;
 }
 
+// A surface that does not repeat, so that its histogram is smooth.
+Codes ground() {
+    constexpr int side = 512;
+    HeightField field{Plane<float>(Extent{side, side}), 4.0f, 4.0f, Wrap::clamp, Wrap::clamp};
+    for (int k = 0; k < side * side; ++k) {
+        const double x = 0.0123 * (k % side), y = 0.0123 * (k / side);
+        field.height.at(k % side, k / side) = static_cast<float>(
+            0.5 + 0.15 * std::sin(9.13 * x + 6.27 * y) + 0.12 * std::sin(15.37 * x - 12.91 * y + 1.0) +
+            0.1 * std::sin(6.71 * x + 21.43 * y + 2.0) * std::cos(18.19 * x));
+    }
+    return reference::codes_of(*bake(field));
+}
+
 }  // namespace
 
 TEST(Repair, TakesLightnessBack) {
@@ -63,17 +76,18 @@ TEST(Repair, TakesLightnessBack) {
 // A shift leaves no gaps in the histogram, cuts z off nearly everywhere, and moves the middle almost as far as the
 // curve of sRGB does.
 TEST(Repair, SubtractsABrightnessThatWasAdded) {
-    Codes light = clean();
+    const Codes plain = ground();
+    Codes light = plain;
     for (unsigned char& code : light.values) code = static_cast<unsigned char>(std::min(255, code + 51));
     const Texture texture = reference::texture_of(light);
     EXPECT_FALSE(repaired(texture).texture) << "z proves nothing";
     RepairOptions options;
     options.likely = true;
     const Repaired done = repaired(texture, options);
-    EXPECT_EQ(plan_of(done).substr(0, 27), "N314 subtract 51 of 255");
+    EXPECT_EQ(plan_of(done).substr(0, 23), "N314 subtract 51 of 255");
     ASSERT_TRUE(done.texture);
-    EXPECT_LT(angle(*done.texture, reference::texture_of(clean())), 1.0) << "where x or y was cut off, nothing is left";
-    Codes dark = clean();
+    EXPECT_LT(angle(*done.texture, reference::texture_of(plain)), 1.0) << "where x or y was cut off, nothing is left";
+    Codes dark = plain;
     for (unsigned char& code : dark.values) code = static_cast<unsigned char>(std::max(0, code - 51));
     EXPECT_EQ(plan_of(repaired(reference::texture_of(dark), options)).substr(0, 18), "N314 add 51 of 255");
 }

@@ -262,10 +262,9 @@ double CodeComb::share_empty() const {
     return codes_ > 0 ? static_cast<double>(empty) / codes_ : 0.0;
 }
 
-bool CodeComb::is_smooth() const {
+bool CodeComb::is_smooth(double most_empty) const {
     constexpr int kLeastCodes = 20;
-    constexpr double kMostEmpty = 0.02;
-    return values_.empty() && codes_ >= kLeastCodes && share_empty() <= kMostEmpty;
+    return values_.empty() && codes_ >= kLeastCodes && share_empty() <= most_empty;
 }
 
 CombFit CodeComb::best(const std::vector<ToneCurve>& curves) const {

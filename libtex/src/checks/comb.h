@@ -45,8 +45,8 @@ public:
     // The share of codes that no texel has although many have those about them: more than a few in a hundred are left
     // by a contrast above 1, whichever it was.
     [[nodiscard]] double share_empty() const;
-    // Whether enough codes are used, next to each other, that any contrast would show.
-    [[nodiscard]] bool is_smooth() const;
+    // Whether enough codes are used, and at most this share of those between is not, that any contrast would show.
+    [[nodiscard]] bool is_smooth(double most_empty = 0.02) const;
     // The best of these.
     [[nodiscard]] CombFit best(const std::vector<ToneCurve>& curves) const;
 

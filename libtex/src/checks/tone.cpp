@@ -110,18 +110,22 @@ ToneCandidate best_levels(double middle, double as_stored, const ToneTexels& tex
     return *std::find_if(all.begin(), all.end(), [most](const ToneCandidate& one) { return one.error <= most; });
 }
 
-// Where z is cut off nearly everywhere, many contrasts explain it. If the histogram denies all of them, what moved the
+// Where z is cut off in many texels, many contrasts explain it. If the histogram denies all of them, what moved the
 // middle was a shift, as of brightness; people choose whole percents.
-std::optional<ToneCandidate> shift_instead(const ToneCandidate& best, double middle, const ToneTexels& texels) {
+std::optional<ToneCandidate> shift_instead(const ToneCandidate& best, double middle, const ToneTexels& texels,
+                                           const CodeComb& comb) {
+    constexpr double kMostEmpty = 0.02, kMostEmptyOfRound = 0.05;  // a factor of 1.1 leaves 0.09
     constexpr double kAlike = 0.3, kAlikeCodes = 0.1, kCode = 1.0 / 255.0;
     const auto shifted = [](double by) { return ToneCurve{-by, 1.0 - by, 1.0}; };
     const double by = middle - 0.5;
     const auto rounded = [by](double step) { return step * std::floor(by / step + 0.5); };
     double chosen = rounded(kCode);
     if (std::abs(rounded(0.01) - by) <= 0.7 * kCode) chosen = rounded(0.01);
-    if (std::abs(rounded(0.05) - by) <= 1.5 * kCode) chosen = rounded(0.05);
+    const bool is_round = std::abs(rounded(0.05) - by) <= 1.5 * kCode;
+    if (is_round) chosen = rounded(0.05);
+    if (!comb.is_smooth(is_round ? kMostEmptyOfRound : kMostEmpty)) return std::nullopt;
     const ToneCurve curve = shifted(chosen);
-    if (best.form != ZForm::whole || share_uncut(best.curve, texels) >= kLeastUncut) return std::nullopt;
+    if (best.form != ZForm::whole || best.curve.gamma != 1.0) return std::nullopt;
     const double error = error_of(curve, texels);
     if (error > best.error * (1.0 + kAlike) + kAlikeCodes) return std::nullopt;
     return ToneCandidate{curve, error, ZForm::whole};
@@ -286,8 +290,7 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
         if (std::abs(middle_after(best.curve, centre, texels, c) - 0.5) > kMiddleAfter) return std::nullopt;
     }
     if (fits.is_lightness()) return ToneFit{best.curve, as_stored, best.error, fits.other()};
-    const bool leaves_no_gaps = comb.is_smooth() && !in_codes.is_correlated();
-    const auto shift = leaves_no_gaps ? shift_instead(best, middle, texels) : std::nullopt;
+    const auto shift = in_codes.is_correlated() ? std::nullopt : shift_instead(best, middle, texels, comb);
     const ToneCandidate chosen = shift ? *shift : sharpened(best, in_codes, usual, texels);
     if (!shows(chosen.curve, chosen.form)) return std::nullopt;
     const bool is_cut = share_uncut(chosen.curve, texels, chosen.form) < kLeastUncut;
