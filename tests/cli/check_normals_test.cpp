@@ -231,7 +231,7 @@ TEST_F(CheckNormals, OcclusionIsComparedWithTheNormals) {
     };
     change("ao.png", "closed.png", [](const Plane<float>& from, int i, int j) { return 1.0f - from.at(i, j); });
     expect_note("good.dds", "closed.png", "inverted");
-    // As that of transfer-normals on a mesh that hardly hides itself.
+    // transfer-normals makes such occlusion of a mesh that hardly hides itself.
     change("waves.png", "faint.png",
            [](const Plane<float>& from, int i, int j) { return 0.95f + 0.05f * from.at(i, j); });
     EXPECT_EQ(notes("good.dds", "faint.png").size(), 0u);

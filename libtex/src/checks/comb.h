@@ -40,7 +40,7 @@ public:
     CodeComb(const Stored& stored, const Background* background);
 
     [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
-    // Of the curve of sRGB, encoding or decoding. The curve of the result means nothing.
+    // How the curve of sRGB fits, encoding or decoding. The curve in the result means nothing.
     [[nodiscard]] CombFit fit_srgb(bool is_encoded) const;
     // The share of codes that no texel has although many have those about them: more than a few in a hundred are left
     // by a contrast above 1, whichever it was.

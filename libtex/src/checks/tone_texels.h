@@ -35,7 +35,7 @@ double stored_z(ZForm form, double root);
 // the unit circle, they add how far.
 double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
 
-// The same of the curve of sRGB: of encoding, or of decoding.
+// This error of the curve of sRGB, encoding or decoding.
 double error_of_srgb(bool is_encoded, const ToneTexels& texels);
 
 // The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
