@@ -67,7 +67,7 @@ CheckNormals::CheckNormals(const cli::ProgramRow& row) : Batch(row) {
     rules_.add(command);
     command.flag(classifies_, "--classify", "print what each picture holds: normals, heights, colours, ...")
         .often(2, "print what each picture holds");
-    command.flag(lists_y_, "--list-y", "print which way green points in each map, beside findings; --classify is a table");
+    command.flag(lists_y_, "--list-y", "print which way green points in each map (--classify: a table)");
     mesh_.add_input(command);
     documents_.add(command);
     command.check([this] {
