@@ -3,7 +3,6 @@
 #include "checks/damage_rules.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -226,29 +225,13 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
         add("N304", "steps between 8x8 blocks are " + times(ratio) + " those inside", ratio, "ratio");
 }
 
-// Programs that make palettes use all of their colours, and hardly any map has just as many by chance: of 186 maps of
-// wild4, the one that was stored with a palette of 256; 11 others have 1 to 226 colours.
-void check_palette(const CheckContext& context, Findings& findings) {
-    constexpr int kLeastColors = 32;
-    constexpr std::int64_t kLeastColored = 256 * 256;  // texels; small maps have few colours, and so do pixel art's
-    if (context.stored.extent().texels() < kLeastColored) return;
-    const auto colors = static_cast<unsigned>(few_colors(context.stored));
-    if (colors < kLeastColors || !std::has_single_bit(colors)) return;
-    Finding& finding = findings.add("N315", "the picture has exactly " + std::to_string(colors) +
-                                                " colours, as programs that make a palette leave them");
-    finding.figure = colors;
-    finding.unit = "colours";
-    finding.confidence = 0.9;
-    finding.fix_harms = "what lay between the colours of a palette does not come back";
-}
-
 // Pictures of 8 bits alone: what was rounded so and stored with more bits has the same values.
 void check_posterised(const CheckContext& context, Findings& findings) {
     const FormatInfo info = format_info(context.texture.format);
     const bool is_8_bits = !info.has_blocks() && info.sample == SampleKind::unorm && info.bits == 8;
     if (!is_8_bits || !findings.wants("N315")) return;
     const int levels = few_levels(context.stored);
-    if (levels == 0) return check_palette(context, findings);
+    if (levels == 0) return;
     Finding& finding = findings.add("N315", "x and y take " + std::to_string(levels) +
                                                 " values at most, which lie 4 codes or more from each other");
     finding.figure = levels;

@@ -264,9 +264,9 @@ constexpr Rule kTextureRules[] = {
      "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N209 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N315", "posterised", damage, note, true, "x and y take few values.",
-     "The picture was reduced to few colours: posterised, stored with 4 or 5 bits a channel, or with a palette, if it "
-     "has exactly 32, 64, 128 or 256 colours. Smooth surfaces show facets in reflections. Pixel art is meant to be so. "
-     "Export the map again with 8 bits or more if you have its source: smooth values between the steps are a guess.",
+     "The picture was reduced to few colours: posterised, or stored with 4 or 5 bits a channel. Smooth surfaces show "
+     "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its "
+     "source: smooth values between the steps are a guess.",
      "repair-normals FILE --likely -o FIXED", "N201 N305"},
 
     // -- convention -------------------------------------------------------------------------------------------
