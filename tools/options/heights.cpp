@@ -188,27 +188,36 @@ ChannelFile parse_channel_file(const std::string& text) {
     return source;
 }
 
-Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution) {
+namespace {
+
+Result<Image> read_unit_values(Job& job, const std::string& file) {
     ReadOptions read = job.read_options;
     read.values = FileValues::unit;
-    auto image = read_image(source.file, read);
-    if (!image) return image.error();
+    return read_image(file, read);
+}
+
+Result<Plane<float>> channel_of(const Image& image, const ChannelFile& source, const Execution& execution) {
     HeightOptions channel;
     channel.channel = source.channel;
     channel.no_data = std::numeric_limits<float>::quiet_NaN();
-    auto values = height_field(*image, channel, execution);
+    auto values = height_field(image, channel, execution);
     if (!values) return values.error().of(source.file);
     return std::move(values->height);
 }
 
+}  // namespace
+
+Result<Plane<float>> read_channel(Job& job, const ChannelFile& source, const Execution& execution) {
+    const auto image = read_unit_values(job, source.file);
+    return image ? channel_of(*image, source, execution) : Result<Plane<float>>(image.error());
+}
+
 Result<Plane<float>> read_only_channel(Job& job, const ChannelFile& source, const std::string& advice) {
     const Execution execution{job.threads(), {}};
-    if (source.channel != HeightChannel::automatic) return read_channel(job, source, execution);
-    ReadOptions read = job.read_options;
-    read.values = FileValues::unit;
-    const auto image = read_image(source.file, read);
+    const auto image = read_unit_values(job, source.file);
     if (!image) return image.error();
-    if (image->planes.size() < 3) return read_channel(job, source, execution);
+    if (source.channel != HeightChannel::automatic || image->planes.size() < 3)
+        return channel_of(*image, source, execution);
     constexpr float kGrey = 8.5f / 255.0f;  // how far blocks of BC1 and lossy pictures move grey
     std::string ranges;
     bool differ = false;
@@ -224,7 +233,7 @@ Result<Plane<float>> read_only_channel(Job& job, const ChannelFile& source, cons
         }
         ranges += fmt::format("{}{} is {:.2f} to {:.2f}", c == 0 ? "" : ", ", "RGB"[c], least, most);
     }
-    if (!differ) return read_channel(job, {source.file, HeightChannel::g}, execution);
+    if (!differ) return channel_of(*image, {source.file, HeightChannel::g}, execution);
     return Error{ErrorCode::bad_data, source.file, fmt::format("its channels differ ({}): {}", ranges, advice)};
 }
 
