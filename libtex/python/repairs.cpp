@@ -47,6 +47,12 @@ py::dict describe(const RepairStep& step) {
     facts["part"] = step.part ? py::cast(*step.part) : py::none();
     facts["tone"] = step.tone ? py::object(py::make_tuple(step.tone->black, step.tone->white, step.tone->gamma))
                               : py::object(py::none());
+    facts["tones"] = py::none();
+    if (step.tones) {
+        py::list tones;
+        for (const ToneCurve& tone : *step.tones) tones.append(py::make_tuple(tone.black, tone.white, tone.gamma));
+        facts["tones"] = tones;
+    }
     facts["degrees"] = step.degrees;
     return facts;
 }

@@ -84,10 +84,48 @@ TEST(Repair, SubtractsABrightnessThatWasAdded) {
     RepairOptions options;
     options.likely = true;
     const Repaired done = repaired(texture, options);
-    EXPECT_EQ(plan_of(done).substr(0, 5), "N314 ") << "and not the curve of sRGB";
+    EXPECT_EQ(plan_of(done).substr(0, 23), "N314 subtract 51 of 255") << "and not the curve of sRGB";
     Codes dark = plain;
     for (unsigned char& code : dark.values) code = static_cast<unsigned char>(std::max(0, code - 51));
     EXPECT_EQ(plan_of(repaired(reference::texture_of(dark), options)).substr(0, 18), "N314 add 51 of 255");
+}
+
+// Automatic levels stretch each channel from its darkest to its lightest value.
+TEST(Repair, TakesAutomaticLevelsBack) {
+    const Codes plain = clean();
+    for (const int lowest_z : {0, 1}) {
+        Codes codes = plain;
+        for (int c = 0; c < 3; ++c) {
+            int low = 255, high = 0;
+            for (int k = 0; k < codes.extent.width * codes.extent.height; ++k) {
+                const int code = plain.values[static_cast<std::size_t>(3 * k + c)];
+                low = std::min(low, code);
+                high = std::max(high, code);
+            }
+            // Levels of z alone are those of a map with z from 0 to 1, if it has no slope of 90 degrees.
+            if (c == 2 && lowest_z == 1) low = 1;
+            for (int k = 0; k < codes.extent.width * codes.extent.height; ++k) {
+                unsigned char& code = codes.values[static_cast<std::size_t>(3 * k + c)];
+                code = code_of((code - low) / static_cast<double>(high - low));
+            }
+        }
+        const Texture texture = reference::texture_of(codes);
+        RepairOptions options;
+        options.likely = true;
+        const Repaired done = repaired(texture, options);
+        const bool is_auto = lowest_z == 0;
+        EXPECT_EQ(plan_of(done) == "N314 take the levels of each channel back", is_auto) << plan_of(done);
+        if (!is_auto) continue;
+        EXPECT_FALSE(repaired(texture).texture) << "likely";
+        ASSERT_FALSE(done.before.findings.empty());
+        const std::string& message = done.before.findings.front().message;
+        EXPECT_NE(message.find(": R "), std::string::npos) << message;
+        EXPECT_NE(message.find(" % (z then"), std::string::npos) << message;
+        ASSERT_TRUE(done.texture);
+        EXPECT_GT(angle(texture, reference::texture_of(plain)), 3.0);
+        EXPECT_LT(angle(*done.texture, reference::texture_of(plain)),
+                  0.2 * angle(texture, reference::texture_of(plain)));
+    }
 }
 
 // Sixteen values have none in the middle, so that all that is level leans to one side.

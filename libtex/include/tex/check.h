@@ -242,6 +242,9 @@ struct ToneCurve {
     double lightness = 1.0;  // 1 unless the others are 0, 1, 1
 };
 
+// The curves of x, y and z, where each was changed by itself, as automatic levels do.
+using ChannelTones = std::array<ToneCurve, 3>;
+
 struct Finding {
     const Rule* rule = nullptr;
     Severity severity = Severity::warning;
@@ -254,7 +257,8 @@ struct Finding {
     int column = 0, row = 0;
     // The rule tried its fix, and this is what the fix would do beside its purpose; then nobody ought to apply it.
     std::string fix_harms = {};
-    std::optional<ToneCurve> tone = {};  // what the channels went through (N313, N314, and some N201, N209, N302)
+    std::optional<ToneCurve> tone = {};      // what the channels went through (N313, N314, and some N201, N209, N302)
+    std::optional<ChannelTones> tones = {};  // or each of them (some N314)
     // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels
     // or the file; nothing if it left out no texels, either.
     std::optional<Marks> marks = {};

@@ -119,10 +119,11 @@ struct RepairStep {
     const Rule* rule = nullptr;  // whose finding it removes
     RepairKind kind = RepairKind::normalize;
     RepairClass certainty = RepairClass::safe;
-    int channel = -1, other = -1;        // of exchange, invert, and undo_tone of one channel: 0 to 3 for R, G, B, A
-    std::optional<Region> part = {};     // of invert_part
-    std::optional<ToneCurve> tone = {};  // of undo_tone
-    double degrees = 0.0;                // the mean angle by which it changes the normals of the base level
+    int channel = -1, other = -1;            // of exchange, invert, and undo_tone of one channel: 0 to 3 for R, G, B, A
+    std::optional<Region> part = {};         // of invert_part
+    std::optional<ToneCurve> tone = {};      // of undo_tone
+    std::optional<ChannelTones> tones = {};  // of undo_tone, instead of `tone`: of each channel by itself
+    double degrees = 0.0;                    // the mean angle by which it changes the normals of the base level
 };
 
 // "exchange R and B", "decode with the sRGB curve".

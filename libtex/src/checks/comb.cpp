@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "checks/tone_texels.h"
+#include "checks/tone_text.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -196,8 +197,7 @@ CombFit CodeComb::fit_values(const ToneCurve& curve) const {
 
 CombFit CodeComb::fit(const ToneCurve& curve) const {
     if (!values_.empty()) return fit_values(curve);
-    const bool is_shift = curve.gamma == 1.0 && std::abs(curve.white - curve.black - 1.0) < 1e-9;
-    if (codes_ == 0 || is_shift) return {curve};  // a shift leaves no gaps
+    if (codes_ == 0 || is_shift(curve)) return {curve};  // a shift leaves no gaps
     const auto redo = [&](double c) { return redone(curve, c); };
     return fit_shares(curve, shares_of(redo, kHalf), shares_of(redo, kCut));
 }
@@ -256,10 +256,18 @@ double CodeComb::correlation(const Counts& shares) const {
 }
 
 double CodeComb::share_empty() const {
-    std::ptrdiff_t empty = 0;
-    for (const Channel& channel : channels_)
-        empty += std::count(channel.is_empty.begin(), channel.is_empty.end(), true);
-    return codes_ > 0 ? static_cast<double>(empty) / codes_ : 0.0;
+    std::size_t empty = 0, codes = 0;
+    for (const Channel& channel : channels_) {
+        const auto is_used = [&channel](std::size_t k) { return channel.counts[k] && !channel.is_empty[k]; };
+        std::size_t first = 0, end = kCodes;
+        while (first < end && !is_used(first)) ++first;
+        while (end > first && !is_used(end - 1)) --end;
+        for (std::size_t k = first; k < end; ++k) {
+            codes += channel.counts[k] ? 1 : 0;
+            empty += channel.is_empty[k] ? 1 : 0;
+        }
+    }
+    return codes > 0 ? static_cast<double>(empty) / static_cast<double>(codes) : 0.0;
 }
 
 bool CodeComb::is_smooth(double most_empty) const {

@@ -42,8 +42,8 @@ public:
     [[nodiscard]] CombFit fit(const ToneCurve& curve) const;
     // How the curve of sRGB fits, encoding or decoding. The curve in the result means nothing.
     [[nodiscard]] CombFit fit_srgb(bool is_encoded) const;
-    // The share of codes that no texel has although many have those about them: more than a few in a hundred are left
-    // by a contrast above 1, whichever it was.
+    // The share of codes, from the first to the last that is used, that no texel has although many have those about
+    // them: more than a few in a hundred are left by a contrast above 1, whichever it was.
     [[nodiscard]] double share_empty() const;
     // Whether enough codes are used, and at most this share of those between is not, that any contrast would show.
     [[nodiscard]] bool is_smooth(double most_empty = 0.02) const;

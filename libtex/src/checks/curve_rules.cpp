@@ -3,6 +3,7 @@
 #include "checks/curve_rules.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,12 +11,14 @@
 #include <string>
 #include <vector>
 
+#include "checks/auto_levels.h"
 #include "checks/comb.h"
 #include "checks/context.h"
 #include "checks/lengths.h"
 #include "checks/thresholds.h"
 #include "checks/tone.h"
 #include "checks/tone_texels.h"
+#include "checks/tone_text.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -23,6 +26,7 @@ namespace {
 
 // Thresholds that follow from the nature of the damage and need no fitting.
 constexpr double kOffCentre = 0.03;
+constexpr double kLikelyLevels = 0.9;                   // a confidence
 constexpr double kPlainPower = 2.2;                     // which many programs have in place of the curve of sRGB
 constexpr double kLeastDarkened = 0.94;                 // nearer to 1, flat maps with short vectors look alike
 constexpr double kUnitAfterDivision = 0.05;             // the mean error of the lengths
@@ -96,6 +100,30 @@ bool check_darkened(const CheckContext& context, const Centre& centre, Findings&
     return true;
 }
 
+// Levels of each channel by itself.
+bool check_auto_levels(const CheckContext& context, const Centre& centre, Findings& findings) {
+    if (!context.stored.has_z() || context.kind != Kind::normals || !context.sampled_ok || has_free_lengths(context))
+        return false;
+    const auto found = find_auto_levels(context, centre);
+    if (!found) return false;
+    std::string levels;
+    constexpr std::array kComponents{Component::x, Component::y, Component::z};
+    for (std::size_t k = 0; k < kComponents.size(); ++k) {
+        const ToneCurve& curve = found->curves[k];
+        levels += (levels.empty() ? "" : ", ") + std::string(1, "RGBA"[context.stored.channel(kComponents[k])]) + " " +
+                  decimal(100.0 * curve.black, 0) + " % to " + decimal(100.0 * curve.white, 0) + " %";
+    }
+    Finding& finding = findings.add(
+        "N314",
+        "each channel reaches from 0 to 255, as automatic levels make it, and vectors are unit vectors if these "
+        "are taken back: " +
+            levels + " (z then differs by " + decimal(found->error, 1) + " codes from what x and y imply, and by " +
+            decimal(found->as_stored, 1) + " as stored)");
+    finding.confidence = kLikelyLevels;
+    finding.tones = found->curves;
+    return true;
+}
+
 // A change of levels that is neither the curve of sRGB nor a darkening: it moves x and y off the middle, and one curve
 // brings them back and makes vectors unit vectors.
 bool check_tone(const CheckContext& context, const Centre& centre, Findings& findings) {
@@ -113,17 +141,14 @@ bool check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     const double contrast = is_gamma ? 1.0 : 1.0 / (curve.white - curve.black);
     if (!fit->is_in_codes && !is_lightness && without.distance(0.5) > contrast * centre.distance(0.5) + kAway)
         return false;
-    const std::string what = is_lightness ? "a lightness (HSL) of " + decimal(100.0 * curve.lightness, 0) + " % is"
-                             : is_gamma   ? "gamma " + decimal(curve.gamma, 2) + " is"
-                                          : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
-                                              decimal(100.0 * curve.white, 0) + " % are";
-    Finding& finding = findings.add("N314", "vectors are unit vectors if " + what + " taken back (z then differs by " +
-                                                decimal(fit->error, 1) + " codes from what x and y imply, and by " +
-                                                decimal(fit->as_stored, 1) + " as stored); x and y centre on " +
-                                                decimal(255.0 * centre.x, 0) + " and " + decimal(255.0 * centre.y, 0) +
-                                                " of 255 instead of 128");
-    finding.figure = is_lightness ? curve.lightness : is_gamma ? curve.gamma : contrast;
-    finding.unit = is_lightness ? "lightness" : is_gamma ? "gamma" : "contrast";
+    Finding& finding = findings.add("N314", "vectors are unit vectors if " + curve_text(curve) +
+                                                " taken back (z then differs by " + decimal(fit->error, 1) +
+                                                " codes from what x and y imply, and by " + decimal(fit->as_stored, 1) +
+                                                " as stored); x and y centre on " + decimal(255.0 * centre.x, 0) +
+                                                " and " + decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
+    const bool is_brightness = is_shift(curve);
+    finding.figure = is_lightness ? curve.lightness : is_gamma ? curve.gamma : is_brightness ? -curve.black : contrast;
+    finding.unit = is_lightness ? "lightness" : is_gamma ? "gamma" : is_brightness ? "brightness" : "contrast";
     // Gamma and levels look alike in maps that are nearly flat, and then either leaves little.
     // A change of x and y alone fits no curve of all three by more than some codes.
     // Nor does a change of another kind, as of saturation or of each channel by itself. Rounding alone makes 0.3 codes.
@@ -187,7 +212,9 @@ OtherTone other_tone(const CheckContext& context, const Centre& centre, bool is_
 }  // namespace
 
 void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
-    if (context.stored.is_signed || check_darkened(context, centre, findings)) return;
+    if (context.stored.is_signed || check_auto_levels(context, centre, findings) ||
+        check_darkened(context, centre, findings))
+        return;
     const bool dark = centre.distance(srgb_decoded(0.5)) < thresholds::kDarkCentre;
     const bool light = centre.distance(srgb_encoded(0.5)) < thresholds::kLightCentre;
     if (!dark && !light) {

@@ -14,6 +14,7 @@
 #include "checks/context.h"
 #include "checks/few_values.h"
 #include "checks/tone.h"
+#include "checks/tone_text.h"
 #include "rows/math.h"
 
 namespace tex::inline v1 {
@@ -66,13 +67,10 @@ void find_tone_of_one(const CheckContext& context, Finding& finding) {
     if (!found) return;
     const ToneCurve& curve = found->curve;
     finding.tone = curve;
-    finding.message += "; vectors are unit vectors if " +
-                       (curve.gamma != 1.0 ? "gamma " + decimal(curve.gamma, 2)
-                                           : "the levels from " + decimal(100.0 * curve.black, 0) + " % to " +
-                                                 decimal(100.0 * curve.white, 0) + " %") +
-                       " of " + std::string(1, "RGBA"[stored.channel(found->component)]) +
-                       " alone are taken back (z then differs by " + decimal(found->error, 1) +
-                       " codes from what x and y imply, and by " + decimal(found->as_stored, 1) + " as stored)";
+    const std::string of = std::string(" of ") + "RGBA"[stored.channel(found->component)] + " alone";
+    finding.message += "; vectors are unit vectors if " + curve_text(curve, of) + " taken back (z then differs by " +
+                       decimal(found->error, 1) + " codes from what x and y imply, and by " +
+                       decimal(found->as_stored, 1) + " as stored)";
 }
 
 // Whether x and y went through some contrast, whatever its numbers.

@@ -10,6 +10,7 @@
 #include <tex/format.h>
 
 #include "checks/findings.h"
+#include "checks/tone_text.h"
 
 namespace tex::inline v1 {
 namespace {
@@ -110,7 +111,7 @@ std::string tone_text(const ToneCurve& tone) {
     if (tone.lightness != 1.0) return "take lightness " + decimal(100.0 * tone.lightness, 0) + " % (HSL) back";
     if (tone.gamma != 1.0) return "take gamma " + decimal(tone.gamma, 3) + " back";
     if (tone.black == 0.0 && tone.white > 1.0) return "divide by " + decimal(1.0 / tone.white, 3);
-    if (std::abs(tone.white - tone.black - 1.0) < 1e-9) {
+    if (is_shift(tone)) {
         return std::string(tone.black < 0.0 ? "subtract " : "add ") + decimal(255.0 * std::abs(tone.black), 0) +
                " of 255";
     }
@@ -134,6 +135,7 @@ std::string text_of(const RepairStep& step) {
         case exchange: return "exchange " + letter(step.channel) + " and " + letter(step.other);
         case invert: return "invert " + letter(step.channel);
         case undo_tone:
+            if (step.tones) return "take the levels of each channel back";
             if (!step.tone) return {};
             return tone_text(*step.tone) + (step.channel < 0 ? std::string() : " in " + letter(step.channel));
         default: break;
@@ -199,8 +201,9 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             if (finding.tone && z >= 0) return {{finding.rule, undo_tone, likely, -1, -1, {}, finding.tone}};
             break;
         case undo_tone:
-            if (!finding.tone || z < 0) return {};
+            if ((!finding.tone && !finding.tones) || z < 0) return {};
             step.tone = finding.tone;
+            step.tones = finding.tones;
             // Gamma and levels may fit alike.
             if (step.certainty == safe && finding.confidence < kSurely) step.certainty = likely;
             break;

@@ -149,6 +149,14 @@ Result<void> undo_tone_of(const ToneCurve& tone, int channel, StoredLevels& leve
     return each_row(levels, execution, [&](const LevelTexels& t, int j) { undo_tone_row(t, tone, form, channel, j); });
 }
 
+Result<void> undo_tones(const ChannelTones& tones, StoredLevels& levels, const Execution& execution) {
+    return each_row(levels, execution, [&](const LevelTexels& t, int j) {
+        undo_tone_row(t, tones[0], ZForm::whole, t.x, j);
+        undo_tone_row(t, tones[1], ZForm::whole, t.y, j);
+        undo_tone_row(t, tones[2], ZForm::whole, t.z, j);
+    });
+}
+
 void normalize_row(const LevelTexels& t, int j) {
     for (int i = 0; i < t.image.extent().width; ++i) {
         float &x = t.row(t.x, j)[i], &y = t.row(t.y, j)[i], &z = t.row(t.z, j)[i];
@@ -351,7 +359,9 @@ Result<void> apply_step(const RepairStep& step, double figure, const RepairOptio
             });
         case RepairKind::fill_background: return fill_base(mip, current, levels, execution);
         case RepairKind::rebuild_levels: return build_levels(mip, step.rule->id == "N103", levels, execution);
-        case RepairKind::undo_tone: return undo_tone_of(*step.tone, step.channel, levels, execution);
+        case RepairKind::undo_tone:
+            if (step.tones) return undo_tones(*step.tones, levels, execution);
+            return undo_tone_of(*step.tone, step.channel, levels, execution);
         case RepairKind::straighten: return turn_mean_out(levels, execution);
         case RepairKind::turn_left:
         case RepairKind::turn_right: {
