@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // make_broken: writes samples/broken, which has one file for each rule of check-normals. Only that rule reports the
-// file. Rules about meshes also have a mesh, in samples/broken/meshes. Rules about models have a model.
+// file. Rules about meshes also have a mesh, in samples/broken/meshes. Rules about models have a model. All files are
+// made from the sample height map. FOLDER/options.txt lists the options for checking each file.
 //
 //     make_broken samples/waves.png FOLDER
-//
-// All files are made from the sample height map. FOLDER/options.txt lists the options for checking each file.
 
 #include <algorithm>
 #include <cmath>
@@ -283,13 +282,16 @@ void Maker::damages() {
     png("N314-levels-changed", with_curve(codes(), gamma));
     png("N315-posterised",
         with_curve(codes_of(*scale(part(128, 128), 2.0f)), [](int code) { return (code + 8) / 17 * 17; }));
+    const NormalMap fine = changed(base, [](int i, int j, double& p, double& q) {
+        for (double* slope : {&p, &q}) *slope += 0.35 * std::cos(2.1 * (i + j));
+    });
+    png("N316-chroma-subsampled", jpeg(codes_of(fine), 95));
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));
     png("N308-channels-exchanged", exchange(codes(), 0, 2));
     png("N309-turned", codes_of(turn_picture(base, 30.0)));
-    unsigned state = 1;
-    png("N310-no-surface", codes_of(changed(base, [&](int, int, double& p, double& q) {
+    png("N310-no-surface", codes_of(changed(base, [state = 1u](int, int, double& p, double& q) mutable {
             for (double* slope : {&p, &q}) *slope = ((state = state * 1664525u + 1013904223u) >> 16) / 65536.0 - 0.5;
         })));
     Texture eac = packed(part(128, 128), Encoding::eac_rg11_snorm);

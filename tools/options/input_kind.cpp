@@ -26,7 +26,7 @@ constexpr Judgement kJudgements[] = {
     {"N219", &JudgedPicture::is_other_blue},   {"N301", &JudgedPicture::is_damaged},
     {"N302", &JudgedPicture::is_damaged},      {"N303", &JudgedPicture::is_damaged},
     {"N313", &JudgedPicture::is_damaged},      {"N314", &JudgedPicture::is_damaged},
-    {"N201", &JudgedPicture::is_uneven},
+    {"N316", &JudgedPicture::is_subsampled},   {"N201", &JudgedPicture::is_uneven},
 };
 
 }  // namespace

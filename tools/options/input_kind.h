@@ -20,6 +20,7 @@ struct JudgedPicture {
     bool is_x_ray = false;         // x, y and z in A, B and G
     bool is_other_blue = false;    // x and y beside other data
     bool is_damaged = false;       // by a curve, levels or alpha, which repair-normals undoes
+    bool is_subsampled = false;    // colours at half the resolution of lightness
     bool is_uneven = false;        // vectors of other lengths than 1
     bool has_background = false;   // normals around which a colour that is none is not filled
     std::optional<HeightChannel> height_bytes = {};  // CheckReport::height_bytes

@@ -298,6 +298,11 @@ bool NormalsReader::warn_of_kind(Job& job, const std::string& path, const Source
         job.warn("these are hardly normals: " + judged.words, path);
     } else if (judged.is_damaged) {
         job.warn("its values are not as they were: " + judged.words + "; repair-normals mends that", path);
+    } else if (judged.is_subsampled && doubts_z) {
+        job.warn(
+            "its colours have half the resolution of lightness, as JPEG and lossy WebP store them, and with them "
+            "the finest bumps; take it from a lossless source",
+            path);
     } else if (judged.is_uneven && doubts_z) {
         job.warn("its vectors are not of unit length: " + judged.words +
                      "; pack-normals --normalize makes them so, and if blue holds other data, such as occlusion, "

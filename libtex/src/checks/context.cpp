@@ -14,6 +14,7 @@
 
 #include "checks/centre.h"
 #include "checks/channel_order.h"
+#include "checks/chroma.h"
 #include "checks/tone.h"
 #include "checks/y_verdict.h"
 #include "formats/level_planes.h"
@@ -84,6 +85,24 @@ bool is_after_change_of_levels(const CheckContext& context) {
     return fit && (context.kind == Kind::two_components || fit->error * kLead < fit->as_stored);
 }
 
+// Where chroma has half the resolution of luma, the finest detail of all channels is that of luma, and looks like
+// colours.
+void look_past_chroma(CheckContext& context) {
+    constexpr std::int64_t kLeastTexels = 1024;
+    if (!context.stored.has_z() || context.stored.in_blocks ||
+        !measure_chroma(context.stored, context.background ? &*context.background : nullptr).is_halved())
+        return;
+    const Image image = quarter_of(context.stored);
+    if (image.extent().texels() < kLeastTexels) return;
+    Stored quarter = context.stored;
+    quarter.image = &image;
+    quarter.transparent = nullptr;
+    const KindMeasure measure = measure_kind(quarter, nullptr);
+    if (kind_of(measure, quarter, false) != Kind::normals) return;
+    context.kind = Kind::normals;
+    context.kind_measure = measure;
+}
+
 // Decides whether there are normals at all, and which channels hold them.
 Result<void> decide_kind(CheckContext& context) {
     Stored& stored = context.stored;
@@ -134,6 +153,7 @@ Result<void> decide_kind(CheckContext& context) {
     if (context.kind == Kind::two_components && has_value && !context.kind_measure.alpha_varies)
         context.kind = Kind::normals;
     if (is_after_change_of_levels(context)) context.kind = Kind::normals;
+    if (context.kind == Kind::two_components || context.kind == Kind::no_map) look_past_chroma(context);
     if (context.kind == Kind::two_components) {
         for (Component& held : stored.swizzle) held = held == Component::z ? Component::other : held;
     } else if (context.kind == Kind::x_ray) {

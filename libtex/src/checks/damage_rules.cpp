@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "checks/centre.h"
+#include "checks/chroma.h"
 #include "checks/curve_rules.h"
 #include "checks/few_values.h"
 #include "checks/grid.h"
@@ -225,6 +226,23 @@ void check_blocks(const CheckContext& context, const Traces& traces, Findings& f
         add("N304", "steps between 8x8 blocks are " + times(ratio) + " those inside", ratio, "ratio");
 }
 
+// Colours at half resolution. As bumps of two texels and less are then those of luma, x and y are too small and follow
+// each other in them.
+void check_chroma(const CheckContext& context, Findings& findings) {
+    constexpr double kLeastLost = 2.0;  // codes: a degree or so
+    const FormatInfo info = format_info(context.texture.format);
+    if (info.has_blocks() || info.bits != 8 || context.kind != Kind::normals || !findings.wants("N316")) return;
+    const ChromaDetail detail = measure_chroma(context.stored, context.background ? &*context.background : nullptr);
+    if (!detail.is_halved() || detail.lost() < kLeastLost) return;
+    Finding& finding =
+        findings.add("N316", "from texel to texel, chroma (Cr) changes by " + decimal(detail.chroma / detail.luma, 2) +
+                                 " of what luma does (in intact maps, by 0.7 or more); it has lost about " +
+                                 decimal(detail.lost(), 0) + " codes of 8 bits, rms");
+    finding.figure = detail.lost();
+    finding.unit = "codes";
+    finding.confidence = 0.95;
+}
+
 // Pictures of 8 bits alone: what was rounded so and stored with more bits has the same values.
 void check_posterised(const CheckContext& context, Findings& findings) {
     const FormatInfo info = format_info(context.texture.format);
@@ -293,6 +311,7 @@ Result<void> check_damage_rules(const CheckContext& context, Findings& findings)
     if (!context.sampled_ok) return {};
     check_exchanged(context, findings);
     check_blocks(context, traces, findings);
+    check_chroma(context, findings);
     check_banding(traces.lattice, findings);
     check_posterised(context, findings);
     return {};

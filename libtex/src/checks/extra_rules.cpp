@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "checks/chroma.h"
 #include "checks/curl.h"
 #include "checks/layout_fit.h"
 #include "rows/z_evidence.h"
@@ -113,7 +114,9 @@ Result<void> check_stored_z(const CheckContext& context, Findings& findings) {
         is_sure = counts.share(Property::z_below) > kBelow ? Result<bool>(true) : has_better_slopes_without_z(context);
     }
     if (!is_sure) return is_sure.error();
-    if (*is_sure) add_other_data(context, findings);
+    // What chroma at half resolution has lost does not follow z, either.
+    const Background* const background = context.background ? &*context.background : nullptr;
+    if (*is_sure && !measure_chroma(stored, background).is_halved()) add_other_data(context, findings);
     return {};
 }
 

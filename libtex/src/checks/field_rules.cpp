@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "checks/centre.h"
 #include "checks/thresholds.h"
 #include "checks/turn.h"
 
@@ -53,6 +54,10 @@ const TurnScale* clearest_scale(const Turn& turn) {
 void check_turned(const CheckContext& context, const Turn& turn, Findings& findings) {
     const auto [width, height] = context.stored.extent();
     if (std::min(width, height) < kLeastSideForTurn) return;
+    // Colours whose hue was turned no longer centre on the middle; those of a picture that was turned do.
+    constexpr double kMostOff = 0.05;
+    if (measure_centre(context.stored, context.background ? &*context.background : nullptr).distance(0.5) > kMostOff)
+        return;
     const TurnScale* const scale = clearest_scale(turn);
     if (scale == nullptr || scale->clearest().strength() < thresholds::kTurnStrength) return;
     const double angle = scale->clearest().angle();

@@ -258,9 +258,11 @@ constexpr Rule kTextureRules[] = {
      "N201 N202 N205 N207 N209 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N314", "levels-changed", damage, error, true, "Gamma, brightness, lightness or contrast were changed.",
      "x and y do not centre on the middle, and one curve for all channels (gamma, levels, a shift) or the lightness of "
-     "HSL brings them back and makes z fit x and y. Image editors change levels so, and viewers that write what they "
-     "show. Flat areas lean then. Export the map again without it if you have its source: taking the curve back leaves "
-     "coarser steps.",
+     "HSL brings them back and makes z fit x and y; or each channel reaches from 0 to 255, and levels of its own make "
+     "z "
+     "fit, as after automatic levels. Image editors change levels so, and viewers that write what they show. Flat "
+     "areas "
+     "lean then. Export the map again without it if you have its source: taking the change back leaves coarser steps.",
      "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N209 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N315", "posterised", damage, note, true, "x and y take few values.",
@@ -268,9 +270,14 @@ constexpr Rule kTextureRules[] = {
      "facets in reflections. Pixel art is meant to be so. Export the map again with 8 bits or more if you have its "
      "source: smooth values between the steps are a guess.",
      "repair-normals FILE --likely -o FIXED", "N201 N305"},
+    {"N316", "chroma-subsampled", damage, warning, true, "Colours have half the resolution of lightness.",
+     "JPEG, lossy WebP and video store colours so (4:2:0). Of bumps of two texels and less, only lightness is left, "
+     "which is the same in R, G and B: x and y are smaller there and follow each other, and z does not follow them. "
+     "Nothing brings them back. Maps without such bumps are not judged.",
+     "Go back to the source, and export PNG, or JPEG with 4:4:4.", "N201 N202 N203 N219"},
 
     // -- convention -------------------------------------------------------------------------------------------
-    {"N401", "wrong-y", convention, error, true, "Green or red points the other way than required.",
+    {"N401", "wrong-y", convention, error, true, "Green or red points the wrong way.",
      "The slopes along x and along y are those of one surface, so that each limits the other. Those of this map fit "
      "together only if one of them is turned over. Mostly that is y: green up is OpenGL, Unity, Blender, glTF; green "
      "down is DirectX, Unreal. But a picture that was mirrored in an image editor, or whose red was inverted, looks "
