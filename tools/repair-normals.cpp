@@ -21,6 +21,7 @@
 #include "options/normals.h"
 #include "reports/repair_report.h"
 #include "reports/repairs.h"
+#include "tasks/folders.h"
 #include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 #include "tasks/written_levels.h"
@@ -34,6 +35,8 @@ using MapOfModel = std::shared_ptr<const cli::ModelInput>;
 
 bool is_about_green(const Rule& rule) { return rule.family == RuleFamily::convention || rule.id == "N112"; }
 
+const std::vector<std::string> kStorage = {"--format",     "--container", "--metric",        "--rdo-mean",
+                                           "--dds-header", "--dds-mark",  "--supercompress", "--quality"};
 constexpr std::size_t kMostBytes = static_cast<std::size_t>(-1) / 2;  // of an input
 
 class RepairNormals : public cli::Converter {
@@ -76,12 +79,7 @@ private:
 
     [[nodiscard]] bool writes_to_output() const { return files.output == "-" && !dry_run_; }
     // The options that say how outputs are stored. Without them, files keep their format.
-    [[nodiscard]] bool stores_otherwise() const {
-        return !command
-                    .given_of({"--format", "--container", "--y", "--metric", "--rdo-mean", "--dds-header", "--dds-mark",
-                               "--supercompress", "--quality"})
-                    .empty();
-    }
+    [[nodiscard]] bool stores_otherwise() const { return !command.given_of(kStorage).empty(); }
 
     std::string material_, height_file_;
     std::optional<HeightField> height_;
@@ -326,8 +324,9 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
 Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read) {
     const bool is_changed = repaired.texture.has_value();
     Texture texture = is_changed ? std::move(*repaired.texture) : std::move(source);
-    const bool keeps = !stores_otherwise();
-    const bool is_in_place = job.task.output == job.task.input;
+    // The green of a map without faults points where --y wants it.
+    const bool keeps = !stores_otherwise() && !(is_changed && output.y);
+    const bool is_in_place = cli::is_same_name(job.task.output, job.task.input);
     const bool is_file = read.bytes && !cli::has_level(job.task.output);
     if (keeps && !is_changed && is_in_place) return {};
     if (keeps && !is_changed && is_file && container_of(job.task.map_path()) == job.task.container)

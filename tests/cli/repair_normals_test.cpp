@@ -69,12 +69,15 @@ TEST_F(RepairNormals, MendsSeveralFilesAndLeavesCleanOnesAsTheyAre) {
 TEST_F(RepairNormals, RealMapsDoNotGetWorse) {
     const std::string folder = TEX_SOURCE_DIR "/../shared/data/wild4/normal/";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no ../shared/data/wild4";
+    constexpr const char* kAutoLevels = "-channel R -auto-level -channel G -auto-level -channel B -auto-level +channel";
     const struct {
         const char *file, *change, *limit;  // degrees that may be left
     } cases[] = {{"bevy_water_normals.png", "-brightness-contrast 0x5", "0.2"},
                  {"bevy_water_normals.png", "-brightness-contrast 0x20", "1.5"},
                  {"castle_Brick_02_Nrm.png", "-level 10%,90%", "1.2"},
                  {"castle_Brick_02_Nrm.png", "-gamma 2.2", "0.8"},  // which was BC1 once
+                 {"castle_baked_normals_0004.png", kAutoLevels, "2"},
+                 {"castle_baked_normals_0022.png", kAutoLevels, "2"},
                  {"castle_grassfull_normalmap.png", "-posterize 16", "3"}};
     for (const auto& [file, change, limit] : cases) {
         const Ran ran =
@@ -84,6 +87,19 @@ TEST_F(RepairNormals, RealMapsDoNotGetWorse) {
                                 limit);
         EXPECT_EQ(ran.code, 0) << file << " " << change << "\n" << ran.out << ran.err;
     }
+}
+
+// What the file holds beside the texels stays, and a direction that is asked for and is there changes nothing.
+TEST_F(RepairNormals, AMapWithoutAFaultKeepsItsBytes) {
+    ASSERT_EQ(shell(scratch_, "convert clean.png -set comment 'by hand' kept.png && cp kept.png before.png").code, 0);
+    EXPECT_EQ(go({"kept.png", "-o", "out.png", "--y", "up"}).code, 0);
+    EXPECT_EQ(scratch_.read("out.png"), scratch_.read("before.png"));
+    EXPECT_EQ(go({"kept.png", "-o", "./kept.png", "--y", "up"}).code, 0) << "in place, by another name";
+    EXPECT_EQ(scratch_.read("kept.png"), scratch_.read("before.png"));
+    const std::string ati = TEX_SOURCE_DIR "/../shared/data/dds/fieldstone_ATI2_512_mips10.dds";
+    if (!std::filesystem::exists(ati)) GTEST_SKIP() << "no ../shared/data/dds";
+    EXPECT_EQ(go({ati, "-o", "ati2.dds", "--y", "down"}).code, 0);
+    EXPECT_EQ(shell(scratch_, "cmp " + ati + " ati2.dds").code, 0) << "y stays before x";
 }
 
 // With --likely, parts of both directions are repaired only if a straight line divides them.

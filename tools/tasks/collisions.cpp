@@ -41,13 +41,13 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
     const auto check_not_an_input = [&](const std::string& path) {
         const std::string* const input = path != "-" && is_special_file(path) ? nullptr : inputs.find(path);
         if (input == nullptr) return;
-        throw UsageError(fmt::format("the output {} is {}", printable(path), *input));
+        throw UsageError(fmt::format("the output {} is {}; choose another name or folder", printable(path), *input));
     };
 
     FileTable<const Task*> outputs;
     for (const Task& task : tasks) {
         for (const std::string& path : files_of(task)) {
-            if (!in_place || path != task.input) check_not_an_input(path);
+            if (!in_place || !is_same_name(path, task.input)) check_not_an_input(path);
             if (is_special_file(path)) continue;
             const Task* const* const known = outputs.add(path, &task);
             if (known == nullptr) continue;

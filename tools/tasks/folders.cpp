@@ -33,6 +33,11 @@ bool is_folder(const std::string& path) {
     return status && status->kind == FileKind::folder;
 }
 
+bool is_same_name(const std::string& path, const std::string& other) {
+    const auto plain = [](const std::string& name) { return std::filesystem::path(name).lexically_normal(); };
+    return path == other || plain(path) == plain(other);
+}
+
 Result<void> create_folders_of(const std::string& file) {
     const fs::path folder = fs::path(file).parent_path();
     const std::error_code error = folder.empty() ? std::error_code() : create_folders(slashed(folder));
