@@ -56,4 +56,29 @@ TEST(LodPictures, TheCommandThatWritesTheModelIsNamed) {
     EXPECT_EQ(go("bare.glb" + base), "");
 }
 
+// Viewers draw the map of a model with green up, wherever it points; what a bake makes must look like it.
+TEST(LodPictures, TheMapOfTheHighModelIsReadAsViewersDrawIt) {
+    const Scratch scratch;
+    scratch.add_sample("bricks.png", "bricks.png");
+    scratch.write("low.glb", square(R"({"name":"Skin"})", ""));
+    scratch.write("high.glb", square(R"({"name":"Skin","normalTexture":{"index":0}})",
+                                     R"(,"textures":[{"source":0}],"images":[{"uri":"n.png"}])"));
+    const auto go = [&](const std::string& script) {
+        Ran ran = shell(scratch, script);
+        EXPECT_EQ(ran.code, 0) << script << ": " << ran.err;
+        return ran.err;
+    };
+    go("bake-normals bricks.png -o n.png --bumpiness 3 --y down");
+    const std::string bake = "transfer-normals low.glb high.glb -o baked.png --extent 512 --high-normals own";
+    const std::string said = go(bake);
+    EXPECT_NE(
+        said.find("green is taken to point up, as viewers draw this normal map, but its texels show that it points "
+                  "down; --high-y down bakes what they show"),
+        std::string::npos)
+        << said;
+    EXPECT_EQ(go("compare-normals n.png baked.png --y-a up --y-b up --max-mean 1"), "");
+    EXPECT_EQ(go(bake + " --high-y down"), "");
+    EXPECT_EQ(go("compare-normals n.png baked.png --y-a down --y-b up --max-mean 1"), "");
+}
+
 }  // namespace tex::cli

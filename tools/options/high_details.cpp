@@ -203,21 +203,23 @@ Result<void> HighDetailOptions::add_own(Job& job, const HighParts& high, std::si
     return {};
 }
 
-// The map of a material, as engines draw it. glTF has no other direction of green than up, and yet there are such maps.
+// The map of a material, as engines draw it: glTF has no other direction of green than up, and yet there are such maps.
 Result<const NormalMap*> HighDetailOptions::own_map(Job& job, const ModelInput& map, HighPictures& pictures) const {
     const NormalMap*& known = pictures.own[&map];
     if (known != nullptr) return known;
     SourceOptions options;
     options.read = job.read_options;
-    options.unpack.y_axis = y_;
-    options.measure_y = !y_;
-    options.y_otherwise = YAxis::up;
+    options.unpack.y_axis = y_.value_or(YAxis::up);
+    options.doubt_y = options.inspect = true;
     if (auto opened = map.open(options.read); !opened) return opened.error();
     auto source = read_normals(map.path, options, true, {job.threads(), {}});
     if (!source) return source.error();
-    if (source->info.y_axis == YAxis::down && !y_)
-        job.warn("green points down in this normal map, as its texels show, and is read so; --high-y up reads it as up",
-                 map.name());
+    if (source->info.y_doubtful && !y_) {
+        job.warn(
+            "green is taken to point up, as viewers draw this normal map, but its texels show that it points down; "
+            "--high-y down bakes what they show",
+            map.name());
+    }
     NormalMap& own = pictures.normals.emplace_back(std::move(source->chain.levels.front()));
     const Extent extent = own.extent(), largest = pictures.largest_own;
     pictures.largest_own = {std::max(extent.width, largest.width), std::max(extent.height, largest.height)};
