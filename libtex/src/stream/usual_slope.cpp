@@ -13,7 +13,7 @@
 namespace tex::inline v1 {
 namespace {
 
-constexpr std::int64_t kEnoughTexels = std::int64_t{1} << 18;
+constexpr std::int64_t kEnoughTexels = std::int64_t{1} << 20;
 constexpr double kUsual = 0.99;
 // The leading bits of a positive float are its exponent and the first bits of its fraction: bins of the square of the
 // slope, of at most 1.6 % each, so 0.8 % of the slope.
@@ -48,6 +48,13 @@ double rounded_to_three_digits(double value) {
 UsualSlope::UsualSlope(Extent extent, float strength)
     : width_(extent.width), strength_(strength == 0.0f ? 1.0f : std::abs(strength)),
       stride_(static_cast<int>((extent.texels() + kEnoughTexels - 1) / kEnoughTexels)), counts_(kSlopeBinCount) {}
+
+// Not every n-th row: the joints of tiles come at equal distances, too. (Knuth, The Art of Computer Programming, volume
+// 3, section 6.4: multiplicative hashing.)
+bool UsualSlope::wants(int row) const {
+    const std::uint32_t mixed = static_cast<std::uint32_t>(row) * 2654435769u;
+    return (mixed >> 16) % static_cast<std::uint32_t>(stride_) == 0;
+}
 
 void UsualSlope::add(const VectorRow& row) {
     const std::lock_guard lock(mutex_);

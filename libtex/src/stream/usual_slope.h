@@ -14,14 +14,15 @@
 
 namespace tex::inline v1 {
 
-// Looks at some rows of a map, about 2^18 texels, in any order and from any thread. The result depends on neither.
+// Looks at all rows of a map of up to 2^20 texels, and at about as many texels of a larger one, in any order and from
+// any thread. The result depends on neither.
 class UsualSlope {
 public:
     // `strength` is that of the map, and not 0: slopes are counted as they are at strength 1, so that each strength of
     // the same heights finds the same.
     explicit UsualSlope(Extent extent, float strength = 1.0f);
 
-    [[nodiscard]] bool wants(int row) const { return row % stride_ == 0; }
+    [[nodiscard]] bool wants(int row) const;
     void add(const VectorRow& row);
 
     // The 99th percentile, rise per texel along the steepest direction, to 1 %. To be called after all rows.
