@@ -115,6 +115,10 @@ TEST(ForeignOptions, AreAnswered) {
     };
     says("bake-normals", "--strength=3", "--strength; here it is --bumpiness\n");
     says("bake-normals", "--scale", "--scale; here it is --bumpiness\n");
+    says("bake-normals", "--roughness-out",
+         "--roughness-out; here it is mip-normals --roughness-out, which makes roughness follow from the normals that "
+         "levels average\n");
+    says("blend-normals", "--method", "--method; here it is --mode\n");
     says("scale-normals", "--strength", "--strength; here it is --scale\n");
     says("pack-normals", "--size", "--size; here it is --max-size, which leaves out larger levels\n");
     says("transfer-normals", "--size", "--size; here it is --extent\n");

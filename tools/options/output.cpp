@@ -234,7 +234,7 @@ void report_texture(Job& job, Extent extent, int levels, const PackOptions& pack
     const bool is_odd = can_hold_blocks(job.task.container) && !can_hold_blocks(engine->container);
     if (is_odd && pack.encoding == engine->format) {
         job.warn(
-            fmt::format("--for {0} is meant for {1} files, which its importer compresses; this {2} file holds {3}, "
+            fmt::format("--for {0} is meant for {1} files; this {2} file holds {3}, "
                         "which is not compressed: name it {1}, or choose a --format",
                         engine->name, extension_of(engine->container), extension_of(job.task.container),
                         name_of(kEncodingNames, pack.encoding)));

@@ -236,8 +236,8 @@ void TransferMaps::add(Command& command, const FileOptions& files) {
     positions_.add(command, files, "--position-out", "write x, y and z of what rays hit, as floats");
     occlusion_.add(command, files, "--occlusion-out", "write ambient occlusion: 1 is open, 0 closed")
         .often(2, "write ambient occlusion");
-    Option& into = command.option("--occlusion-into", "WHERE",
-                                  "put ambient occlusion into the output:", [this](const std::string& text) {
+    Option& into = command.option("--occlusion-into", "WHERE", "put ambient occlusion into the output",
+                                  [this](const std::string& text) {
                                       if (text != "model") throw UsageError("must be model");
                                       occlusion_into_model_ = true;
                                   });
