@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNoFit = std::numeric_limits<double>::max();
 
-// Stored z is grown over the z that x and y imply.
+// Stored z as a straight line over the z that x and y imply.
 struct ZLine {
     double slope = 0.5, at_zero = 0.5;
     double error = kNoFit;  // the mean distance in codes from the sphere, with texels that leave the unit circle

@@ -34,12 +34,13 @@ bool ChromaDetail::is_halved() const {
 double ChromaDetail::lost() const { return std::sqrt(std::max(0.0, luma * luma - chroma * chroma)); }
 
 ChromaDetail measure_chroma(const Stored& stored, const Background* background) {
+    constexpr int kWindow = 128;
     constexpr float kLeastSquare = 0.1f, kMostSquare = 2.2f;  // of lengths: grey has 0, black and white 3
     const auto& planes = stored.image->planes;
     if (stored.is_signed || !stored.has_z() || planes.size() < 3) return {};
     DetailSums luma, chroma;
     std::int64_t squares = 0;
-    for (const Rect& window : sample_windows(stored.extent())) {
+    for (const Rect& window : sample_windows(stored.extent(), kWindow)) {
         for (int j = window.y; j + 1 < window.y + window.height; j += 2) {
             const float* rows[2][3];
             for (std::size_t c = 0; c < 3; ++c) {
