@@ -13,10 +13,13 @@ namespace {
 
 struct DetailSums {
     double straight = 0.0, diagonal = 0.0;
+    std::int64_t with_detail = 0;
     void add(float a, float b, float c, float d) {
+        constexpr float kDetail = 4.0f * 1.5f / 255.0f;
         const float horizontal = a - b + c - d, vertical = a + b - c - d, both = a - b - c + d;
         straight += static_cast<double>(horizontal * horizontal + vertical * vertical);
         diagonal += static_cast<double>(both * both);
+        with_detail += std::max(std::abs(horizontal), std::abs(vertical)) >= kDetail ? 1 : 0;
     }
 };
 
@@ -27,7 +30,8 @@ struct DetailSums {
 bool ChromaDetail::is_halved() const {
     constexpr double kLeastDetail = 0.35, kLeastStraight = 1.5;
     constexpr double kMostDiagonal = 0.45, kMostStraight = 0.75;
-    return luma_diagonal >= kLeastDetail && luma >= kLeastStraight &&
+    constexpr double kLeastShare = 0.1;  // a few texels that stand out say nothing about the others
+    return share >= kLeastShare && luma_diagonal >= kLeastDetail && luma >= kLeastStraight &&
            chroma_diagonal <= kMostDiagonal * luma_diagonal && chroma <= kMostStraight * luma;
 }
 
@@ -71,10 +75,10 @@ ChromaDetail measure_chroma(const Stored& stored, const Background* background) 
             }
         }
     }
-    const auto rms = [&](double sum) {
-        return 255.0 / 4.0 * std::sqrt(sum / static_cast<double>(std::max<std::int64_t>(1, squares)));
-    };
-    return {rms(luma.straight), rms(chroma.straight), rms(luma.diagonal), rms(chroma.diagonal)};
+    const auto all = static_cast<double>(std::max<std::int64_t>(1, squares));
+    const auto rms = [all](double sum) { return 255.0 / 4.0 * std::sqrt(sum / all); };
+    return {rms(luma.straight), rms(chroma.straight), rms(luma.diagonal), rms(chroma.diagonal),
+            static_cast<double>(luma.with_detail) / all};
 }
 
 Image quarter_of(const Stored& stored) {

@@ -13,6 +13,7 @@ namespace tex::inline v1 {
 struct ChromaDetail {
     double luma = 0.0, chroma = 0.0;                    // between left and right, and between top and bottom
     double luma_diagonal = 0.0, chroma_diagonal = 0.0;  // between both diagonals: filters that enlarge leave none of it
+    double share = 0.0;                                 // of squares, that have such detail in luma
     // In normal maps, Cr has 0.7 to 1.2 of the detail of Y. Whether it is gone, and Y has enough to tell: in flat maps,
     // rounding is all that there is.
     [[nodiscard]] bool is_halved() const;
