@@ -132,6 +132,15 @@ TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
     EXPECT_NE(idle.err.find("--fade does nothing if levels are kept"), std::string::npos) << idle.err;
 }
 
+TEST_F(PackNormals, BlocksThatBecomeTheDefaultEncodingAreNamed) {
+    does("pack-normals", {"n.dds", "-o", "b.dds", "--format", "bc5"});
+    does("pack-normals", {"b.dds", "-o", "c.dds", "--y", "down"},
+         "bc5 becomes dxt5nm, the default; --format bc5 keeps it");
+    does("pack-normals", {"b.dds", "-o", "d.dds", "--y", "down", "--format", "bc5"});
+    does("pack-normals", {"b.dds", "-o", "e.dds", "--format", "dxt5nm"});
+    does("unpack-normals", {"b.dds", "-o", "f.dds"});
+}
+
 TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {
     does("pack-normals", {"n.dds", "-o", "up.png"});
     does("pack-normals", {"up.png", "-o", "down.png", "--y", "down", "--keep-length"});

@@ -82,13 +82,13 @@ Result<void> PackCommand::process(Job& job) {
     report_texture(job, packed->extent, packed->levels, packed->pack, packed->bytes, packed->rdo);
     note_output(job, {packed->extent, packed->levels, packed->left_out > 0, packed->pack.encoding});
     report(job, *packed);
-    // Nobody chose the encoding, and the input's would have stayed as it is.
-    const Encoding before = encoding_of(packed->source, job.task);
+    // Nobody chose the encoding, and texels could have stayed in that of the input.
+    const Encoding before = encoding_of(packed->source, job.task), now = packed->pack.encoding;
     if (!output.of(job.task.engine).format && format_info(packed->source.format).has_blocks() &&
-        before != packed->pack.encoding) {
+        now == default_encoding(job.task.container) && before != now) {
         repeated_.add(job, job.task.input,
                       fmt::format("{} becomes {}, the default; --format {} keeps it", name_of(kEncodingNames, before),
-                                  name_of(kEncodingNames, packed->pack.encoding), name_of(kEncodingNames, before)));
+                                  name_of(kEncodingNames, now), name_of(kEncodingNames, before)));
     }
     // Nobody chose the file type: it is that of the input.
     if (job.task.container == Container::jpeg &&

@@ -34,7 +34,14 @@ bool is_folder(const std::string& path) {
 }
 
 bool is_same_name(const std::string& path, const std::string& other) {
-    const auto plain = [](const std::string& name) { return std::filesystem::path(name).lexically_normal(); };
+    // A ".." after a link leads elsewhere than the name before it says.
+    const auto plain = [](const std::string& name) {
+        std::filesystem::path parts;
+        for (const auto& part : std::filesystem::path(name)) {
+            if (part != ".") parts /= part;
+        }
+        return parts;
+    };
     return path == other || plain(path) == plain(other);
 }
 

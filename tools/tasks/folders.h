@@ -14,7 +14,7 @@ namespace tex::cli {
 // Whether `path` can only be a folder: it is one, or ends in a slash.
 [[nodiscard]] bool is_folder(const std::string& path);
 
-// Whether both name the same file without links: "a.png" and "./a.png".
+// Whether both are the same name but for ".": "a.png" and "./a.png".
 [[nodiscard]] bool is_same_name(const std::string& path, const std::string& other);
 
 // Creates the folders above `file` that are not there. Errors: io.
