@@ -30,8 +30,7 @@ TEST_F(Github, HasALineForEachFinding) {
     ASSERT_EQ(lines.size(), 3u) << ran.out;
     EXPECT_TRUE(lines[0].starts_with("::warning file=art/up.dds,title=N109 wrong-levels::The number of levels "))
         << ran.out;
-    EXPECT_TRUE(
-        lines[1].starts_with("::error file=art/up.dds,title=N401 wrong-y::Green or red points the wrong way"))
+    EXPECT_TRUE(lines[1].starts_with("::error file=art/up.dds,title=N401 wrong-y::Green or red points the wrong way"))
         << ran.out;
     EXPECT_NE(lines[1].find("%0AFix: mip-normals ./art/up.dds --keep-length --mips 3 --y-in up --y down "),
               std::string::npos)

@@ -171,8 +171,9 @@ TEST_F(Init, ElevationModelsKeepTheSlopesOfTheGround) {
 
 // Faults keep rules away, and the error says which; exchanged channels need no other space.
 TEST_F(Init, FaultsAreTheReasonWhyNothingIsWritten) {
-    does("bake-normals bricks.png --bumpiness 8 -o rough_n.png --no-sync --quiet; "
-         "convert rough_n.png -separate -swap 0,2 -combine PNG24:bgr.png; rm rough_n.png");
+    does(
+        "bake-normals bricks.png --bumpiness 8 -o rough_n.png --no-sync --quiet; "
+        "convert rough_n.png -separate -swap 0,2 -combine PNG24:bgr.png; rm rough_n.png");
     const Ran kind = shell(scratch_, "check-normals --classify bgr.png");
     EXPECT_EQ(kind.out.rfind("normals ", 0), 0u) << kind.out;
     does("mkdir faulty; mv bgr.png faulty; head -c 500 art/wall_n.png > faulty/torn.png");
