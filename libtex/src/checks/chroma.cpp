@@ -25,8 +25,7 @@ struct DetailSums {
 
 }  // namespace
 
-// tests/bench/VERDICTS.md: maps that were never halved have a ratio of 0.64 or more, between the diagonals, and JPEGs
-// with 4:2:0 up to 0.35; where luma has hardly any detail, it is noise.
+// The figures are in tests/bench/VERDICTS.md. Where luma has hardly any detail, the ratios are noise.
 bool ChromaDetail::is_halved() const {
     constexpr double kLeastDetail = 0.35, kLeastStraight = 1.5;
     constexpr double kMostDiagonal = 0.45, kMostStraight = 0.75;

@@ -258,11 +258,10 @@ constexpr Rule kTextureRules[] = {
      "N201 N202 N205 N207 N209 N213 N214 N215 N301 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N314", "levels-changed", damage, error, true, "Gamma, brightness, lightness or contrast were changed.",
      "x and y do not centre on the middle, and one curve for all channels (gamma, levels, a shift) or the lightness of "
-     "HSL brings them back and makes z fit x and y; or each channel reaches from 0 to 255, and levels of its own make "
-     "z "
-     "fit, as after automatic levels. Image editors change levels so, and viewers that write what they show. Flat "
-     "areas "
-     "lean then. Export the map again without it if you have its source: taking the change back leaves coarser steps.",
+     "HSL brings them back and makes z fit x and y. Or automatic levels stretched each channel to reach from 0 to 255, "
+     "and z fits once each is taken back. Image editors change levels so, and viewers that write what they show. Flat "
+     "areas then lean. Export the map again without it if you have its source: taking the change back leaves coarser "
+     "steps.",
      "repair-normals FILE -o FIXED",
      "N201 N202 N205 N207 N209 N213 N214 N215 N305 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219 N221"},
     {"N315", "posterised", damage, note, true, "x and y take few values.",
