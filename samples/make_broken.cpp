@@ -268,8 +268,7 @@ void Maker::damages() {
     png("N302-srgb-encoded", srgb_encode(codes()));
     png("N303-premultiplied", with_alpha(codes(), true));
     png("N304-jpeg-blocks", jpeg(codes(), 30));
-    const Codes whole_codes = codes();
-    Codes enlarged = whole_codes, blocks = whole_codes;
+    Codes whole_codes = codes(), enlarged = whole_codes, blocks = whole_codes;
     for (int k = 0; k < 128 * 128; ++k) {
         for (int c = 0; c < 3; ++c) {
             enlarged.at(k % 128, k / 128, c) = whole_codes.at(k % 128 / 2, k / 256, c);  // each four times
@@ -286,6 +285,7 @@ void Maker::damages() {
         for (double* slope : {&p, &q}) *slope += 0.35 * std::cos(2.1 * (i + j));
     });
     png("N316-chroma-subsampled", jpeg(codes_of(fine), 95));
+    png("N317-palette", with_palette(codes(), 9));
     png("N305-banding", codes_of(from_heights(tex::reference::integrate(base), 64)));
     png("N306-bc-blocks", blocks);
     png("N307-seam", codes_of(part(96, 96)));

@@ -180,6 +180,24 @@ Codes exchange(const Codes& codes, int a, int b) {
     return result;
 }
 
+Codes with_palette(const Codes& codes, double apart) {
+    constexpr double kMiddle = 127.5, kCos = 0.8, kSin = 0.6;
+    const auto rounded = [apart](double c) { return apart * std::floor(c / apart + 0.5); };
+    const auto code = [](double c) { return static_cast<unsigned char>(std::clamp(c + kMiddle + 0.5, 0.0, 255.0)); };
+    Codes result = codes;
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) {
+            const double x = codes.at(i, j, 0) - kMiddle, y = codes.at(i, j, 1) - kMiddle;
+            const double u = rounded(kCos * x + kSin * y), v = rounded(kCos * y - kSin * x);
+            const double a = kCos * u - kSin * v, b = kSin * u + kCos * v;
+            result.at(i, j, 0) = code(a);
+            result.at(i, j, 1) = code(b);
+            result.at(i, j, 2) = code(std::sqrt(std::max(0.0, kMiddle * kMiddle - a * a - b * b)));
+        }
+    }
+    return result;
+}
+
 Codes srgb_encode(const Codes& codes) {
     return map_codes(codes,
                      [](double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055; });

@@ -37,6 +37,8 @@ Codes with_curve(Codes codes, Curve curve) {  // of a code from 0 to 255
     for (unsigned char& code : codes.values) code = static_cast<unsigned char>(curve(int{code}));
     return codes;
 }
+// Colours on a lattice of x and y that lie so many codes apart, turned so that x and y take many values; z follows.
+Codes with_palette(const Codes& codes, double apart);
 Codes srgb_encode(const Codes& codes);  // the sRGB curve, applied once too often
 Codes srgb_decode(const Codes& codes);
 // Adds an alpha of smooth blobs, 0 to 1: straight (the same RGB) or multiplied into R, G and B.

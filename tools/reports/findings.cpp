@@ -93,7 +93,9 @@ std::string occlusion_text(const CheckReport& report) {
 
 std::string y_text(const CheckReport& report) {
     if (report.error) return {};
-    const std::string words = report.y.y ? fmt::format("green points {}", name_of_y(*report.y.y))
+    // Slopes show that one of red and green is mirrored, but not which.
+    const std::string words = report.y.y ? fmt::format("green points {}{}", name_of_y(*report.y.y),
+                                                       *report.y.y == YAxis::down ? ", or red points left" : "")
                                          : std::string("which way green points does not show");
     return fmt::format("{}: {}\n", later_title(report), words);
 }

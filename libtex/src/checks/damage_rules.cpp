@@ -243,13 +243,33 @@ void check_chroma(const CheckContext& context, Findings& findings) {
     finding.confidence = 0.95;
 }
 
+void check_palette(const CheckContext& context, const Lattice& lattice, Findings& findings) {
+    if (!findings.wants("N317")) return;
+    // Heights of 8 bits have slopes on a lattice, and few colours from the beginning.
+    constexpr double kSureLattice = 0.95;
+    if (lattice.strength >= kSureLattice && findings.find("N305") != nullptr) return;
+    const Palette palette = find_palette(context.stored);
+    if (palette.colors == 0) return;
+    Finding& finding =
+        findings.add("N317", std::to_string(palette.colors) + " colours; those of " + percent(palette.share) +
+                                 " of the texels are 3 codes or more from all others, and in the mean " +
+                                 decimal(palette.degrees, 1) + " degrees from the nearest one");
+    finding.figure = palette.degrees;
+    finding.unit = "degrees";
+    finding.confidence = 0.95;
+}
+
 // Pictures of 8 bits alone: what was rounded so and stored with more bits has the same values.
-void check_posterised(const CheckContext& context, Findings& findings) {
+void check_posterised(const CheckContext& context, const Lattice& lattice, Findings& findings) {
     const FormatInfo info = format_info(context.texture.format);
     const bool is_8_bits = !info.has_blocks() && info.sample == SampleKind::unorm && info.bits == 8;
-    if (!is_8_bits || !findings.wants("N315")) return;
+    if (!is_8_bits || !(findings.wants("N315") || findings.wants("N317"))) return;
     const int levels = few_levels(context.stored);
-    if (levels == 0) return;
+    if (levels == 0) {
+        check_palette(context, lattice, findings);
+        return;
+    }
+    if (!findings.wants("N315")) return;
     Finding& finding = findings.add("N315", "x and y take " + std::to_string(levels) +
                                                 " values at most, which lie 4 codes or more from each other");
     finding.figure = levels;
@@ -313,7 +333,7 @@ Result<void> check_damage_rules(const CheckContext& context, Findings& findings)
     check_blocks(context, traces, findings);
     check_chroma(context, findings);
     check_banding(traces.lattice, findings);
-    check_posterised(context, findings);
+    check_posterised(context, traces.lattice, findings);
     return {};
 }
 

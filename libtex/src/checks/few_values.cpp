@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <map>
+#include <vector>
 
 #include <tex/types.h>
 
@@ -14,25 +16,125 @@ namespace tex::inline v1 {
 namespace {
 
 constexpr std::int64_t kLeastManyTexels = 64 * 64;  // pixel art has few colours
+constexpr std::size_t kSmallestPalette = 24, kLargestPalette = 256;
+// In the maps of wild4 that have so few colours of their own, each lies a code or two from another one, or flat facets
+// have few neighbours that differ.
+constexpr double kLoneCodes = 2.5, kLeastLone = 0.1;  // share of the texels
+constexpr double kLeastSteps = 0.1;                   // of all pairs of neighbours: those that differ,
+constexpr double kLeastNearSteps = 0.02;              // by no more than colours lie apart there
+constexpr double kNearStep = 2.5;                     // times the distance to the nearest colour
+
+using StoredColor = std::array<float, 3>;  // x, y and z; 0 for a z that is not stored
+
+struct PaletteColor {
+    std::int64_t texels = 0;
+    double codes = 1e9, degrees = 180.0;  // to the nearest other colour
+};
+using PaletteColors = std::map<StoredColor, PaletteColor>;
+
+class ColorRows {
+public:
+    explicit ColorRows(const Stored& stored)
+        : x_(plane_of(stored, Component::x)), y_(plane_of(stored, Component::y)), z_(plane_of(stored, Component::z)) {}
+    [[nodiscard]] StoredColor at(int i, int j) const {
+        return {x_->at(i, j), y_->at(i, j), z_ != nullptr ? z_->at(i, j) : 0.0f};
+    }
+
+private:
+    static const Plane<float>* plane_of(const Stored& stored, Component component) {
+        const int channel = stored.channel(component);
+        return channel < 0 ? nullptr : &stored.image->planes[static_cast<std::size_t>(channel)];
+    }
+    const Plane<float>*x_, *y_, *z_;
+};
+
+// The larger of the differences of x and of y, in codes of 8 bits.
+double codes_between(const StoredColor& a, const StoredColor& b) {
+    return 255.0 * static_cast<double>(std::max(std::abs(a[0] - b[0]), std::abs(a[1] - b[1])));
+}
+
+// Between the vectors of x and y; z follows.
+double degrees_between(const StoredColor& a, const StoredColor& b) {
+    constexpr double kDegrees = 57.29577951308232;
+    const auto vector_of = [](const StoredColor& color) {
+        const double x = 2.0 * static_cast<double>(color[0]) - 1.0, y = 2.0 * static_cast<double>(color[1]) - 1.0;
+        const double square = x * x + y * y, z = std::sqrt(std::max(0.0, 1.0 - square));
+        const double length = std::sqrt(square + z * z);
+        return std::array{x / length, y / length, z / length};
+    };
+    const auto u = vector_of(a), v = vector_of(b);
+    return kDegrees * std::acos(std::clamp(u[0] * v[0] + u[1] * v[1] + u[2] * v[2], -1.0, 1.0));
+}
+
+// The colours of a picture that has so few; nothing if it has more, or few texels.
+PaletteColors few_colors(const Stored& stored) {
+    if (stored.extent().texels() < kLeastManyTexels) return {};
+    const ColorRows rows(stored);
+    PaletteColors colors;
+    auto last = colors.end();  // neighbours often have the same colour
+    for (int j = 0; j < stored.extent().height; ++j) {
+        for (int i = 0; i < stored.extent().width; ++i) {
+            const StoredColor color = rows.at(i, j);
+            if (last == colors.end() || last->first != color) last = colors.try_emplace(color).first;
+            ++last->second.texels;
+            if (colors.size() > kLargestPalette) return {};
+        }
+    }
+    for (auto& [color, one] : colors) {
+        for (const auto& [other, unused] : colors) {
+            if (other == color) continue;
+            one.codes = std::min(one.codes, codes_between(color, other));
+            one.degrees = std::min(one.degrees, degrees_between(color, other));
+        }
+    }
+    return colors;
+}
+
+// Neighbours in rows.
+struct ColorSteps {
+    std::int64_t pairs = 0;
+    std::int64_t all = 0;   // those that differ
+    std::int64_t near = 0;  // those of them whose colours lie apart from all others, and next to each other
+};
+
+ColorSteps count_steps(const Stored& stored, const PaletteColors& colors) {
+    constexpr int kMostRows = 1024;
+    const ColorRows rows(stored);
+    ColorSteps steps;
+    for (int j = 0; j < stored.extent().height; j += 1 + stored.extent().height / kMostRows) {
+        for (int i = 1; i < stored.extent().width; ++i) {
+            const StoredColor a = rows.at(i - 1, j), b = rows.at(i, j);
+            ++steps.pairs;
+            if (a == b) continue;
+            ++steps.all;
+            const double from_a = colors.at(a).codes, from_b = colors.at(b).codes;
+            const bool is_near =
+                std::min(from_a, from_b) > kLoneCodes && codes_between(a, b) <= kNearStep * std::max(from_a, from_b);
+            steps.near += is_near ? 1 : 0;
+        }
+    }
+    return steps;
+}
 
 }  // namespace
 
-int few_colors(const Stored& stored) {
-    constexpr std::size_t kMostColors = 256;
-    const auto& planes = stored.image->planes;
-    if (planes.size() < 3 || stored.extent().texels() < kLeastManyTexels) return 0;
-    std::set<std::array<float, 3>> colors;
-    std::array<float, 3> last{-1.0f, -1.0f, -1.0f};  // neighbours often have the same colour
-    for (int j = 0; j < stored.extent().height; ++j) {
-        for (int i = 0; i < stored.extent().width; ++i) {
-            const std::array<float, 3> color = {planes[0].at(i, j), planes[1].at(i, j), planes[2].at(i, j)};
-            if (color == last) continue;
-            last = color;
-            colors.insert(color);
-            if (colors.size() > kMostColors) return 0;
-        }
+Palette find_palette(const Stored& stored) {
+    const PaletteColors colors = few_colors(stored);
+    if (colors.size() < kSmallestPalette) return {};
+    double lone = 0.0, degrees = 0.0;
+    for (const auto& [color, one] : colors) {
+        if (one.codes <= kLoneCodes) continue;
+        lone += static_cast<double>(one.texels);
+        degrees += static_cast<double>(one.texels) * one.degrees;
     }
-    return static_cast<int>(colors.size());
+    const double share = lone / static_cast<double>(stored.extent().texels());
+    if (share < kLeastLone) return {};
+    const ColorSteps steps = count_steps(stored, colors);
+    const auto of_pairs = [&](std::int64_t count) {
+        return static_cast<double>(count) / static_cast<double>(steps.pairs);
+    };
+    if (of_pairs(steps.all) < kLeastSteps || of_pairs(steps.near) < kLeastNearSteps) return {};
+    return {static_cast<int>(colors.size()), share, degrees / lone};
 }
 
 int few_levels(const Stored& stored) {

@@ -274,6 +274,11 @@ constexpr Rule kTextureRules[] = {
      "which is the same in R, G and B: x and y are smaller there and follow each other, and z does not follow them. "
      "Nothing brings them back. Maps without such bumps are not judged.",
      "Go back to the source, and export PNG, or JPEG with 4:4:4.", "N201 N202 N203 N219"},
+    {"N317", "palette", damage, warning, true, "The map has few colours, which lie apart.",
+     "GIF, PNG of 8 bits a texel and programs that make PNGs smaller (pngquant, TinyPNG) choose 256 colours or less, "
+     "for eyes and not for directions. Smooth surfaces show facets or grain in reflections. Nothing brings back what "
+     "lay between the colours.",
+     "Go back to the source, and make PNGs smaller without loss (oxipng, lossless WebP).", "N305 N306"},
 
     // -- convention -------------------------------------------------------------------------------------------
     {"N401", "wrong-y", convention, error, true, "Green or red points the wrong way.",

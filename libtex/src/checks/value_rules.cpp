@@ -12,7 +12,6 @@
 #include "checks/centre.h"
 #include "checks/comb.h"
 #include "checks/context.h"
-#include "checks/few_values.h"
 #include "checks/tone.h"
 #include "checks/tone_text.h"
 #include "rows/math.h"
@@ -102,10 +101,6 @@ void check_lengths(const CheckContext& context, Findings& findings) {
             finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
         }
         find_levels_of(context, is_stretched, finding);
-        const int colors = finding.tone ? 0 : few_colors(context.stored);
-        if (colors > 0)
-            finding.message += "; the picture has " + std::to_string(colors) +
-                               " colours, as with a palette, and what lay between them does not come back";
     }
     const double below = counts.share(Property::z_below);
     if (below > kBelowShare && counts.share(Property::z_behind) > kFarBelow * below) {
