@@ -87,12 +87,13 @@ compile_alone() {
 
 # preset NAME "TARGET..." CTEST_OPTION...: builds the targets of a preset, or the whole preset, and runs tests.
 preset() {
-    local name=$1 targets=()
+    local name=$1 targets=() counts
+    counts=$(mktemp -u "$results/$1.XXXX.xml")
     read -ra targets <<<"$2"
     shift 2
     [ "${#targets[@]}" -eq 0 ] || targets=(--target "${targets[@]}")
     cmake --preset "$name" >"$results/$name.configure.log" || { cat "$results/$name.configure.log"; return 1; }
-    cmake --build --preset "$name" "${targets[@]}" && ctest --preset "$name" --output-junit "$results/$name.xml" "$@"
+    cmake --build --preset "$name" "${targets[@]}" && ctest --preset "$name" --output-junit "$counts" "$@"
 }
 
 # The longest tests of the release, which the nightly run has: all instruction sets but one, pages with real models in a
