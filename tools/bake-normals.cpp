@@ -237,11 +237,10 @@ void BakeNormals::warn_of_flat(cli::Job& job, const Report& done) const {
 
 // A wall along the border, which nobody has asked for.
 void BakeNormals::warn_of_border(cli::Job& job, double ratio) const {
-    constexpr double kWall = 2.0;
-    if (ratio <= kWall || command.given("--wrap") || files.tiles) return;
+    if (ratio <= cli::kWallRatio || command.given("--wrap") || files.tiles) return;
     walls_.add(job, job.task.input,
                "a wall along the border, steeper than anything inside: these heights do not repeat, but are baked as "
-               "if they did; --wrap clamp (--wrap repeat: without this warning)");
+               "if they did; --wrap clamp ends them there (--wrap repeat silences this warning)");
 }
 
 // Occlusion by what lies beyond the tiles around a tile.

@@ -148,7 +148,7 @@ void note_extras(cli::Job& job, const std::string& detail, const std::vector<Ext
     for (const ExtraChannel& other : others)
         names.push_back(other.name == 'L' ? "the lengths of vectors" : std::string(1, other.name));
     job.warn(fmt::format("data beside the normals, in {}, are not blended: the output has there what the base has "
-                         "(--drop: without this warning)",
+                         "(--drop silences this warning)",
                          cli::join(names, " and ")),
              detail);
 }

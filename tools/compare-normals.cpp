@@ -150,7 +150,8 @@ Result<cli::ExitCode> CompareNormals::compare_inputs(cli::Console& console) {
 Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
     if (documents_.has_any() || mesh_.has_mesh())
-        return Error{ErrorCode::bad_option, names[0], "a folder, and --heatmap, --report and --mesh are for two files"};
+        return Error{ErrorCode::bad_option, names[0],
+                     "a folder, and --heatmap, --report and --mesh are for two files: give each pair by itself"};
     const auto pairs = cli::folder_pairs(names[0], names[1], running_.read);
     if (!pairs) return pairs.error();
     for (std::size_t k = 0; k < 2; ++k) {

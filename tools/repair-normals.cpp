@@ -63,10 +63,10 @@ private:
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
-    [[nodiscard]] Result<void> process_file(cli::Job& job);
-    [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model);
+    [[nodiscard]] Result<void> process_file(cli::Job& job, cli::RepairTotals& totals);
+    [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model, cli::RepairTotals& totals);
     [[nodiscard]] RepairOptions options_for(std::optional<YAxis> y) const;
-    void report(cli::Job& job, const std::string& name, const Repaired& repaired);
+    void report(cli::Job& job, const std::string& name, const Repaired& repaired) const;
     [[nodiscard]] Result<Repaired> repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
                                                    const Texture& texture, const Execution& execution) const;
     [[nodiscard]] Result<void> write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read);
@@ -188,7 +188,7 @@ RepairOptions RepairNormals::options_for(std::optional<YAxis> y) const {
     return options;
 }
 
-void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired) {
+void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired) const {
     for (const FaultLeft& fault : repaired.left) {
         const Finding& left = fault.finding;
         if (left.severity != Severity::error) continue;
@@ -206,21 +206,24 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
             is_in_model ? "" : name);
     }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
-    const std::lock_guard lock(mutex_);
-    totals_.add(repaired);
 }
 
+// What could not be written counts nowhere.
 Result<void> RepairNormals::process(cli::Job& job) {
-    auto done = process_file(job);
+    cli::RepairTotals totals;
+    auto done = process_file(job, totals);
     if (!done && report_.is_given()) report_.add_failure(job, done.error());
+    if (!done) return done;
+    const std::lock_guard lock(mutex_);
+    totals_.add(totals);
     return done;
 }
 
-Result<void> RepairNormals::process_file(cli::Job& job) {
-    if (job.task.model_output) return process_model(job, *job.task.model_output);
+Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& totals) {
+    if (job.task.model_output) return process_model(job, *job.task.model_output, totals);
     if (dry_run_ && is_model(job.task.input)) {
         const auto model = cli::maps_to_write(job.task.input, material_, {job.read_options});
-        return model ? process_model(job, *model) : model.error();
+        return model ? process_model(job, *model, totals) : model.error();
     }
     // Read once, so that what is copied is what was checked.
     ReadOptions read = job.read_options;
@@ -241,6 +244,7 @@ Result<void> RepairNormals::process_file(cli::Job& job) {
     if (!repaired) return repaired.error();
     job.report.update(cli::repairs_json(*repaired));
     report(job, job.task.name(), *repaired);
+    totals.add(*repaired);
     if (report_.is_given()) {
         const auto y = job.task.model ? output.y.value_or(YAxis::up) : output.y;
         if (auto added = report_.add(job, job.task.name(), *texture, *repaired, y); !added) return added;
@@ -279,7 +283,7 @@ Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector
 }
 
 // The maps that change become PNG, and the others keep their bytes.
-Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput& model) {
+Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput& model, cli::RepairTotals& totals) {
     ModelChanges changes;
     bool is_refused = false;
     for (std::size_t k = 0; k < model.images.size(); ++k) {
@@ -293,6 +297,7 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         auto repaired = repair_in_model(job, maps, *texture, execution);
         if (!repaired) return repaired.error();
         report(job, maps.front()->name(), *repaired);
+        totals.add(*repaired);
         if (report_.is_given()) {
             const YAxis y = output.y.value_or(YAxis::up);
             if (auto added = report_.add(job, maps.front()->name(), *texture, *repaired, y); !added) return added;

@@ -34,6 +34,8 @@ ROWS = [
     ("ASTC 4x4", ".ktx2", ["--format", "astc-4x4", *KTX2], 8 * 4 / 3),
     ("ASTC 6x6", ".ktx2", ["--format", "astc-6x6", *KTX2], 128 / 36 * 4 / 3),
     ("ASTC 6x6, --rdo-mean 0.5", ".ktx2", ["--format", "astc-6x6", "--rdo-mean", "0.5", *KTX2], 128 / 36 * 4 / 3),
+    ("UASTC", ".ktx2", ["--format", "uastc", *KTX2], 8 * 4 / 3),
+    ("UASTC, --rdo-mean 0.5", ".ktx2", ["--format", "uastc", "--rdo-mean", "0.5", *KTX2], 8 * 4 / 3),
 ]
 
 UASTC = """

@@ -108,7 +108,7 @@ TEST_F(BlendNormals, WhatADetailHasBesideItsNormalsIsMissedAloud) {
     EXPECT_EQ(
         ran.err,
         "blend-normals: warning: d.png: data beside the normals, in A, are not blended: the output has there what "
-        "the base has (--drop: without this warning)\n");
+        "the base has (--drop silences this warning)\n");
     does("blend-normals", {"base.exr", "d.png", "-o", "x.exr", "--drop"});
     does("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr"});
 }

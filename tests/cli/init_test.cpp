@@ -169,6 +169,20 @@ TEST_F(Init, ElevationModelsKeepTheSlopesOfTheGround) {
     EXPECT_NE(manifest.find("match = \"land/alps.asc\"\nsteps = [ { bake = {} } ]"), std::string::npos) << manifest;
 }
 
+// A slope that ends is steeper at the border than anywhere: the rule says so, and the build has nothing to warn of.
+TEST_F(Init, HeightsThatDoNotRepeatAreClamped) {
+    std::filesystem::create_directories(scratch_.path("hills"));
+    does(
+        "convert -size 128x128 -depth 16 gradient: waves.png -resize 128x128! -evaluate multiply 0.5 -compose plus "
+        "-composite hills/slope_h.png && bake-normals hills/slope_h.png -o /dev/null --container png --bumpiness auto");
+    does("build-normals --init --quiet");
+    const std::string manifest = scratch_.read("normals.toml");
+    EXPECT_NE(manifest.find("{ bake = { bumpiness = \"auto\", wrap = \"clamp\" } }"), std::string::npos) << manifest;
+    const Ran built = shell(scratch_, "build-normals --no-sync");
+    EXPECT_EQ(built.code, 0) << built.err;
+    EXPECT_EQ(built.err.find("a wall along the border"), std::string::npos) << built.err;
+}
+
 // Faults keep rules away, and the error says which; exchanged channels need no other space.
 TEST_F(Init, FaultsAreTheReasonWhyNothingIsWritten) {
     does(

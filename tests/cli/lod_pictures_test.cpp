@@ -41,7 +41,7 @@ TEST(LodPictures, TheCommandThatWritesTheModelIsNamed) {
     };
     const std::string noted = go("lod.glb" + base);
     EXPECT_NE(noted.find("lod.glb: has a normal map, and its new map is written as a picture; --name '{stem}.glb' "
-                         "writes the model itself (--container dds: without this warning)"),
+                         "writes the model itself (--container dds silences this warning)"),
               std::string::npos)
         << noted;
     // What it says is true.

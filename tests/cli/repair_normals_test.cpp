@@ -111,6 +111,13 @@ TEST_F(RepairNormals, PromisesNoMoreThanItMayDo) {
         << ran.out;
 }
 
+TEST_F(RepairNormals, WhatCouldNotBeWrittenCountsNowhere) {
+    std::filesystem::create_directories(scratch_.path("mended/light.png/in-the-way"));
+    const Ran ran = go({"light.png", "clean.png", "--out-dir", "mended"});
+    EXPECT_EQ(ran.code, 3) << ran.err;
+    EXPECT_NE(ran.out.find("1 map: 0 repaired, 1 without a fault to repair\n"), std::string::npos) << ran.out;
+}
+
 TEST_F(RepairNormals, APlanIsPrintedAndNothingWritten) {
     const auto before = scratch_.list();
     const Ran text = go({"light.png", "clean.png", "--dry-run"});

@@ -63,6 +63,19 @@ TEST_F(ScaleNormals, KindEncodingAndLevelsStay) {
     EXPECT_EQ(report({"n.png", "-o", "x.dds"})["format"], "dxt5nm");  // a picture becomes a texture
 }
 
+// Who reads ATI2 as it was meant first takes y from the first channel.
+TEST_F(ScaleNormals, AnOrderThatChangesIsSaid) {
+    ASSERT_EQ(go("bake-normals", {"waves.png", "-o", "n.dds", "--bumpiness", "4", "--format", "bc5"}).code, 0);
+    const auto warns = [&](const std::string& output) {
+        const Ran ran = go("scale-normals", {"n.dds", "-o", output, "--scale", "2", "--bc5-order", "yx"});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        return ran.err.find("n.dds: y comes first (ATI2), and in the output x does, as in BC5") != std::string::npos;
+    };
+    EXPECT_TRUE(warns("x.dds"));
+    EXPECT_FALSE(warns("x.ktx2")) << "which has one order";
+    EXPECT_EQ(go("scale-normals", {"n.dds", "-o", "x.dds", "--scale", "2"}).err, "");
+}
+
 TEST_F(ScaleNormals, TheScaleIsNeededAndFinite) {
     EXPECT_EQ(go("scale-normals", {"waves.png", "-o", "x.dds"}).err,
               "scale-normals: error: no scale: give --scale S\n");

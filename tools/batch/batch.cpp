@@ -200,7 +200,7 @@ void Converter::note_pictures(Job& job, const std::string& what) {
     const std::string extension = std::filesystem::path(job.task.input).extension().string();
     const std::string_view kept = name_of(kContainerNames, job.task.container);
     repeated_.add(job, job.task.input,
-                  fmt::format("{}; --name '{{stem}}{}' writes the model itself (--container {}: without this "
+                  fmt::format("{}; --name '{{stem}}{}' writes the model itself (--container {} silences this "
                               "warning)",
                               what, extension, kept));
 }
@@ -218,7 +218,7 @@ void Converter::note_output(Job& job, const OutputFacts& facts, const std::strin
             level_count(facts.extent) > 1) {
             repeated_.add(job, file,
                           "one level is written, as in the input, and flickers from afar; --mips all builds the "
-                          "smaller ones (--mips keep: without this warning)");
+                          "smaller ones (--mips keep silences this warning)");
         }
         const int side = std::max(facts.extent.width, facts.extent.height);
         if (facts.is_reduced && side < chain->mip.max_side) {

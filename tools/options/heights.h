@@ -18,6 +18,9 @@
 
 namespace tex::cli {
 
+// Heights with a greater BakeFileReport::border_ratio do not repeat.
+inline constexpr double kWallRatio = 2.0;
+
 // --color-space, --ocio-config and the environment variable OCIO.
 struct ColorGroup {
     ColorOptions color;  // without the environment variable

@@ -334,7 +334,7 @@ void NormalsReader::warn_of_extras(Job& job, const std::string& path, const Sour
                                       [](const ExtraChannel& other) { return other.name == 'A'; });
     const std::string_view keeps = is_alpha ? alpha_encoding(info, job.task.container) : std::string_view();
     const bool is_one = names.size() == 1;
-    job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop: without this warning)",
+    job.warn(fmt::format("{} {} data beside the normals, which {} left out ({}--drop silences this warning)",
                          join(names, " and "), is_one && names[0].front() != 't' ? "holds" : "hold",
                          is_one ? "is" : "are", keeps.empty() ? "" : fmt::format("--format {} keeps A; ", keeps)),
              path);

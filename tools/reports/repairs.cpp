@@ -112,6 +112,12 @@ void RepairTotals::add(const Repaired& of) {
     if (!of.has_errors() && std::any_of(of.steps.begin(), of.steps.end(), is_likely)) ++likely;
 }
 
+void RepairTotals::add(const RepairTotals& of) {
+    for (int RepairTotals::*const count : {&RepairTotals::maps, &RepairTotals::repaired, &RepairTotals::refused,
+                                           &RepairTotals::kept, &RepairTotals::whole, &RepairTotals::likely})
+        this->*count += of.*count;
+}
+
 std::string RepairTotals::text(bool is_dry_run) const {
     std::string text =
         fmt::format("{} {}: {} {}repaired", maps, maps == 1 ? "map" : "maps", repaired, is_dry_run ? "would be " : "");

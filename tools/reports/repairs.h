@@ -28,6 +28,7 @@ struct RepairTotals {
     int likely = 0;                                                // of those that are repaired: by a likely step
 
     void add(const Repaired& of);
+    void add(const RepairTotals& of);
     [[nodiscard]] std::string text(bool is_dry_run) const;
 };
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -20,12 +21,14 @@
 #include <tex/check.h>
 #include <tex/file.h>
 #include <tex/format.h>
+#include <tex/pipeline.h>
 
 #include "cli/file_status.h"
 #include "cli/glob.h"
 #include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
+#include "options/heights.h"
 #include "reports/baseline.h"
 #include "reports/kinds.h"
 #include "tasks/find_files.h"
@@ -79,11 +82,29 @@ std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const s
     return fmt::format("{{ pack = {{ {} }} }}", text);
 }
 
+// What a bake finds in heights.
+struct HeightTraits {
+    bool is_on_ground = false;  // they state the size of their texels, and have slopes of their own
+    bool has_wall = false;      // they do not repeat
+};
+
+HeightTraits traits_of(const std::string& path, const CheckReport& report, const ReadOptions& read) {
+    BakeFileOptions options;
+    options.read = read;
+    options.heights.channel = report.height_bytes.value_or(options.heights.channel);
+    options.auto_strength = true;
+    options.pack.encoding = Encoding::rgb8;
+    options.write.into = std::make_shared<std::vector<std::byte>>();
+    const auto baked = bake_file(path, path, Container::bmp, options, {1, {}});
+    if (!baked) return {};
+    return {baked->heights.ground.has_value(), baked->border_ratio > kWallRatio};
+}
+
 constexpr std::string_view kBakeStep = "{ bake = {";
 
-// Heights that lie on the ground have slopes of their own.
-std::string bake_step(const CheckReport& report, bool is_on_ground) {
-    std::string settings = is_on_ground ? "" : " bumpiness = \"auto\"";
+std::string bake_step(const CheckReport& report, const HeightTraits& traits) {
+    std::string settings = traits.is_on_ground ? "" : " bumpiness = \"auto\"";
+    if (traits.has_wall && !traits.is_on_ground) settings += ", wrap = \"clamp\"";
     if (report.height_bytes) {
         settings += fmt::format("{} channel = \"{}\"", settings.empty() ? "" : ",",
                                 name_of(kHeightChannelNames, *report.height_bytes));
@@ -97,7 +118,7 @@ public:
     Tree(std::vector<FoundFile> files, std::string root) : files_(std::move(files)), root_(std::move(root)) {
         reports_.resize(files_.size());
         why_not_.resize(files_.size());
-        is_on_ground_.resize(files_.size());
+        traits_.resize(files_.size());
     }
 
     [[nodiscard]] std::string path_of(std::size_t k) const {
@@ -111,10 +132,7 @@ public:
             for (std::size_t k = next++; k < files_.size() && console.host().interruption().empty(); k = next++) {
                 auto report = check_file(path_of(k), {}, running.read, {1, {}});
                 if (report) reports_[k] = std::move(*report);
-                if (reports_[k].kind == PictureKind::heights) {
-                    const auto image = read_image(path_of(k), running.read);
-                    is_on_ground_[k] = image && image->ground ? 1 : 0;
-                }
+                if (holds_heights(k)) traits_[k] = traits_of(path_of(k), reports_[k], running.read);
                 const std::size_t count = ++done;
                 if (shows)
                     console.draw_progress(static_cast<double>(count) / static_cast<double>(files_.size()),
@@ -226,6 +244,12 @@ public:
     }
 
 private:
+    [[nodiscard]] bool holds_heights(std::size_t k) const {
+        const PictureKind kind = reports_[k].kind;
+        return kind == PictureKind::heights ||
+               (kind == PictureKind::grey && named_as(files_[k].path) == NamedAs::heights);
+    }
+
     void settle(std::size_t k, const std::set<std::string>& materials, SettingsOfFile& file) {
         const CheckReport& report = reports_[k];
         const bool is_normals = report.kind == PictureKind::normals;
@@ -249,10 +273,9 @@ private:
             return;
         } else if (report.kind == PictureKind::object_space) {
             why_not_[k] = "normals in object space, which convert-normals turns into tangent space with the mesh";
-        } else if (report.kind == PictureKind::heights ||
-                   (report.kind == PictureKind::grey && named_as(file.path) == NamedAs::heights)) {
+        } else if (holds_heights(k)) {
             if (materials.find(name_beginning(file.path)) == materials.end()) {
-                file.settings = bake_step(report, is_on_ground_[k] != 0);
+                file.settings = bake_step(report, traits_[k]);
                 return;
             }
             why_not_[k] = "heights with a normal map beside them";
@@ -273,7 +296,7 @@ private:
     const std::string root_;
     std::vector<CheckReport> reports_;
     std::vector<std::string> why_not_;
-    std::vector<char> is_on_ground_;  // heights that state the size of their texels
+    std::vector<HeightTraits> traits_;
 };
 
 std::string manifest_text(const std::vector<InferredRule>& rules, const Tree& tree) {
