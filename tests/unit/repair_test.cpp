@@ -122,6 +122,18 @@ TEST(Repair, RebuildsBlue) {
     EXPECT_EQ(plan_of(stretched), "N221 store z as (z + 1) / 2");
     ASSERT_TRUE(stretched.texture);
     EXPECT_LT(angle(*stretched.texture, reference::texture_of(steep)), 0.2);
+    // z is off by some codes, so that something else happened, too.
+    Codes noisy = steep;
+    for (std::size_t k = 2; k < noisy.values.size(); k += 3) {
+        const int off = static_cast<int>(k / 3 * 7 % 13) - 6;
+        noisy.values[k] = static_cast<unsigned char>(std::clamp(2 * noisy.values[k] - 255 + off, 0, 255));
+    }
+    const Repaired more = repaired(reference::texture_of(noisy));
+    const auto found = std::find_if(more.before.findings.begin(), more.before.findings.end(),
+                                    [](const Finding& finding) { return finding.rule->id == "N221"; });
+    ASSERT_NE(found, more.before.findings.end());
+    EXPECT_LT(found->confidence, 0.95);
+    EXPECT_EQ(plan_of(more).find("N221"), std::string::npos) << "it is likely, and no option asks for that";
     const Repaired rebuilt = repaired(with_blue([](unsigned char) { return static_cast<unsigned char>(255); }));
     EXPECT_EQ(plan_of(rebuilt), "N209 rebuild z from x and y");
     ASSERT_TRUE(rebuilt.texture);

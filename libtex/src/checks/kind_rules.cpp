@@ -183,11 +183,20 @@ PictureKind check_behind(const CheckContext& context, Findings& findings) {
     if (m.texels > 0 && share > kInvertedShare && v.off_centre() < kCentred && v.z < kDown) {
         add_counted(context, findings, "N220", Property::z_behind, " point into the surface (z below -0.1)");
     } else if (from_zero) {
-        add_share(findings, "N221",
-                  percent(m.as(Reading::z_from_zero).unit) +
-                      " of the vectors have about unit length if z is blue, and " + percent(v.unit) +
-                      " if it is 2 blue - 1",
-                  m.as(Reading::z_from_zero).unit);
+        // Rounding makes 0.6 codes where vectors are steep. What else was changed has moved x and y, too.
+        constexpr double kMostOfRounding = 1.5;
+        const double off = 255.0 * fit_of_z(context.stored).from_zero;
+        Finding& finding = findings.add("N221", percent(m.as(Reading::z_from_zero).unit) +
+                                                    " of the vectors have about unit length if z is blue, and " +
+                                                    percent(v.unit) + " if it is 2 blue - 1");
+        finding.figure = m.as(Reading::z_from_zero).unit;
+        finding.unit = "share";
+        if (off > kMostOfRounding) {
+            finding.confidence = 0.9;
+            finding.message += "; z then still differs by " + decimal(off, 1) +
+                               " codes from what x and y imply, so that more may have been changed, as by automatic "
+                               "levels";
+        }
     } else if (m.texels == 0 || m.upright < kUprightShare || m.inverted > kRare * m.upright) {
         add_counted(context, findings, "N213", Property::z_behind, " point away from the surface (z below -0.1)");
         // Object-space maps hold unit vectors, although rounded or compressed ones.

@@ -224,6 +224,7 @@ std::vector<RepairStep> steps_for(const RuleRepair& row, const Finding& finding,
             break;
         case stretch_z:
             if (z < 0) return {};
+            if (finding.confidence < kSurely) step.certainty = likely;
             break;
         default: break;
     }
