@@ -65,6 +65,7 @@ private:
 BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     command.usage("BASE DETAIL... -o FILE");
     command.usage("BASE... --detail FILE --out-dir DIR");
+    command.usage("BASE -o FILE --extent WxH");
     command.input("BASE DETAIL...", "normal maps, the base first; with --detail all are bases; - is standard input");
     files.add(command, true);
     add_blend();
@@ -111,7 +112,9 @@ Result<void> BlendNormals::check(const std::vector<cli::Task>& tasks) {
                                           blend_.extent.width, blend_.extent.height, running.read.max_texels));
     if (tasks.empty()) return {};
     const std::size_t count = details_of(tasks.front()).size();
-    if (count == 0) throw cli::UsageError("no detail: give BASE DETAIL... -o FILE, or --detail FILE");
+    // Without a detail, the base gets another size.
+    if (count == 0 && blend_.extent == Extent{})
+        throw cli::UsageError("no detail: give BASE DETAIL... -o FILE, or --detail FILE");
     layers_.check(count);
     constexpr std::int64_t kMostShared = std::int64_t{1} << 30;  // bytes
     if (tasks.size() > 1) shared_ = share_maps(kMostShared);

@@ -6,7 +6,10 @@
 
 Prints a row for each format, means over the maps: download and memory in bits a texel of the base level (with all
 levels, which pictures get when they are loaded), mean angle and the angle that 99.9 % of the texels keep, in degrees.
-Rows for UASTC need node and npm, which fetches ktx2-encoder (basis_universal as WebAssembly) and three's transcoder.
+The table of normal-maps-migrate(7) is that of ../shared/data/normal/detail_water_512.png, brick_512.jpg,
+aluminium_745.png and panels_tangent_512_rgba.png, pairs/Bricks102/normal_GL.jpg and LeatherPartsMat_Normal.png of the
+flight helmet in mesh. Rows of basis_universal need node and npm, which fetches ktx2-encoder (basis_universal as
+WebAssembly) and three's transcoder.
 """
 
 import json

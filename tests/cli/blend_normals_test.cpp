@@ -207,12 +207,23 @@ TEST_F(BlendNormals, ResultsHaveTheBaseSizeAndTheirOwnLevels) {
 }
 
 TEST_F(BlendNormals, ADetailThatIsStretchedIsSaidAndTheAdviceKeepsItsShape) {
-    does("blend-normals", {"base.exr", "flat.exr", "-o", "wide.exr", "--extent", "512x256"});
+    does("blend-normals", {"base.exr", "-o", "wide.exr", "--extent", "512x256"});
     const Ran ran = go("blend-normals", {"wide.exr", "detail.exr", "-o", "x.exr", "--tiling", "8"});
     EXPECT_EQ(ran.code, 0);
     const std::string advice = "is stretched 2 to 1 on the base of 512x256; a tiling of 8,4 keeps its shape";
     EXPECT_NE(ran.err.find("detail.exr: " + advice), std::string::npos) << ran.err;
     does("blend-normals", {"wide.exr", "detail.exr", "-o", "x.exr", "--tiling", "8,4"});
+    // What counts is the shape of the result.
+    does("blend-normals", {"wide.exr", "detail.exr", "-o", "x.exr", "--extent", "64x64", "--offset", "0.5,0"});
+    const Ran result = go("blend-normals", {"base.exr", "detail.exr", "-o", "x.exr", "--extent", "512x256"});
+    EXPECT_NE(result.err.find("detail.exr: is stretched 2 to 1 in the result of 512x256"), std::string::npos)
+        << result.err;
+}
+
+TEST_F(BlendNormals, ABaseAloneGetsAnotherSize) {
+    does("blend-normals", {"base.exr", "-o", "alone.exr", "--extent", "40x40"});
+    does("blend-normals", {"base.exr", "flat.exr", "-o", "flat_on_it.exr", "--extent", "40x40"});
+    EXPECT_LT(angle("alone.exr", "flat_on_it.exr"), 0.01);
 }
 
 TEST_F(BlendNormals, MisuseIsRefused) {

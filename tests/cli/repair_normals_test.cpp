@@ -89,6 +89,19 @@ TEST_F(RepairNormals, RealMapsDoNotGetWorse) {
     }
 }
 
+// A lightness of 80 % moves the middle as far as decoding sRGB does; nothing is proved, and nothing is done unasked.
+TEST_F(RepairNormals, ADarkerPictureIsNoProofOfACurve) {
+    const std::string map = TEX_SOURCE_DIR "/../shared/data/wild4/normal/godotdemos_checker_normal.png";
+    if (!std::filesystem::exists(map)) GTEST_SKIP() << "no ../shared/data/wild4";
+    ASSERT_EQ(shell(scratch_, "convert " + map + " -alpha off -modulate 80 PNG24:dark.png").code, 0);
+    const Ran ran = go({"dark.png", "--dry-run"});
+    EXPECT_EQ(ran.out.find("(safe)"), std::string::npos) << ran.out;
+    ASSERT_EQ(
+        shell(scratch_, "convert " + map + " -alpha off -set colorspace RGB -colorspace sRGB PNG24:pale.png").code, 0);
+    EXPECT_NE(go({"pale.png", "--dry-run"}).out.find("N302 srgb-encoded: decode with the sRGB curve (safe)"),
+              std::string::npos);
+}
+
 // What the file holds beside the texels stays, and a direction that is asked for and is there changes nothing.
 TEST_F(RepairNormals, AMapWithoutAFaultKeepsItsBytes) {
     ASSERT_EQ(shell(scratch_, "convert clean.png -set comment 'by hand' kept.png && cp kept.png before.png").code, 0);

@@ -193,6 +193,27 @@ TEST(Bake, AgreesWithTheReferenceForEveryKernelWrapAndSize) {
     }
 }
 
+// texconv -nmap, as DirectXTexNormalMaps.cpp has it: of three rows or columns, the sum of the differences by 6, and y
+// grows downwards.
+TEST(Bake, PrewittIsWhatTexconvMeasures) {
+    constexpr float kAmplitude = 4.0f;
+    const HeightField field = field_of({32, 24}, kAmplitude, Wrap::repeat, [](int i, int j) { return noise(i, j); });
+    const NormalMap map = baked(field, {GradientKernel::prewitt, 1.0f});
+    const auto at = [&](int i, int j) { return static_cast<double>(field.height.at((i + 32) % 32, (j + 24) % 24)); };
+    for (int j = 0; j < 24; ++j) {
+        for (int i = 0; i < 32; ++i) {
+            double x = 0.0, down = 0.0;
+            for (int k = -1; k <= 1; ++k) {
+                x += (at(i - 1, j + k) - at(i + 1, j + k)) * static_cast<double>(kAmplitude) / 6.0;
+                down += (at(i + k, j - 1) - at(i + k, j + 1)) * static_cast<double>(kAmplitude) / 6.0;
+            }
+            const double length = std::sqrt(x * x + down * down + 1.0);
+            ASSERT_NEAR(map.x.at(i, j), x / length, 1e-5);
+            ASSERT_NEAR(-map.y.at(i, j), down / length, 1e-5);
+        }
+    }
+}
+
 TEST(Bake, HeightsNearTheGreatestFloatHaveTheirSlopes) {
     const float four[] = {0.0f, 3e38f, 0.0f, -3e38f};
     const NormalMap map =

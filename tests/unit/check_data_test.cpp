@@ -88,7 +88,9 @@ TEST(CheckData, FindsNoDamageThatIsNotThere) {
         "normal/water1_256.tga N305", "dds/d3d_RifleStock_DXT1_747x600_mips10_nvtt.dds N306",
         "dds/d3d_dwarf_armor_RGBA8_512_mips10.dds N501",
         // Its last column is a wall of 70 degrees, the steepest one inside 33.
-        "dds/fieldstone_ATI2_512_mips10.dds N307", "dds/gz_waves_RGB24_256_mips9_gimp.dds N501"};
+        "dds/fieldstone_ATI2_512_mips10.dds N307", "dds/gz_waves_RGB24_256_mips9_gimp.dds N501",
+        // 226 colours, each 4 degrees from the nearest one.
+        "normal/nm_balls_256.png N317"};
     std::set<std::string> met;
     for (const auto& map : reference::real_maps()) {
         if (!map.intact) continue;

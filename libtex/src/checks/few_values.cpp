@@ -23,11 +23,13 @@ constexpr double kLoneCodes = 2.5, kLeastLone = 0.1;  // share of the texels
 constexpr double kLeastSteps = 0.1;                   // of all pairs of neighbours: those that differ,
 constexpr double kLeastNearSteps = 0.02;              // by no more than colours lie apart there
 constexpr double kNearStep = 2.5;                     // times the distance to the nearest colour
+constexpr std::size_t kFewestNeighbors = 3;  // of each colour, to its right: patterns that repeat exactly have one or two
 
 using StoredColor = std::array<float, 3>;  // x, y and z; 0 for a z that is not stored
 
 struct PaletteColor {
     std::int64_t texels = 0;
+    std::size_t index = 0;
     double codes = 1e9, degrees = 180.0;  // to the nearest other colour
 };
 using PaletteColors = std::map<StoredColor, PaletteColor>;
@@ -80,7 +82,9 @@ PaletteColors few_colors(const Stored& stored) {
             if (colors.size() > kLargestPalette) return {};
         }
     }
+    std::size_t index = 0;
     for (auto& [color, one] : colors) {
+        one.index = index++;
         for (const auto& [other, unused] : colors) {
             if (other == color) continue;
             one.codes = std::min(one.codes, codes_between(color, other));
@@ -95,24 +99,28 @@ struct ColorSteps {
     std::int64_t pairs = 0;
     std::int64_t all = 0;   // those that differ
     std::int64_t near = 0;  // those of them whose colours lie apart from all others, and next to each other
+    std::size_t kinds = 0;  // of pairs of colours that differ
 };
 
 ColorSteps count_steps(const Stored& stored, const PaletteColors& colors) {
     constexpr int kMostRows = 1024;
     const ColorRows rows(stored);
     ColorSteps steps;
+    std::vector<bool> is_met(colors.size() * colors.size());
     for (int j = 0; j < stored.extent().height; j += 1 + stored.extent().height / kMostRows) {
         for (int i = 1; i < stored.extent().width; ++i) {
             const StoredColor a = rows.at(i - 1, j), b = rows.at(i, j);
             ++steps.pairs;
             if (a == b) continue;
             ++steps.all;
-            const double from_a = colors.at(a).codes, from_b = colors.at(b).codes;
-            const bool is_near =
-                std::min(from_a, from_b) > kLoneCodes && codes_between(a, b) <= kNearStep * std::max(from_a, from_b);
+            const PaletteColor &left = colors.at(a), &right = colors.at(b);
+            is_met[left.index * colors.size() + right.index] = true;
+            const bool is_near = std::min(left.codes, right.codes) > kLoneCodes &&
+                                 codes_between(a, b) <= kNearStep * std::max(left.codes, right.codes);
             steps.near += is_near ? 1 : 0;
         }
     }
+    steps.kinds = static_cast<std::size_t>(std::count(is_met.begin(), is_met.end(), true));
     return steps;
 }
 
@@ -133,6 +141,7 @@ Palette find_palette(const Stored& stored) {
     const auto of_pairs = [&](std::int64_t count) {
         return static_cast<double>(count) / static_cast<double>(steps.pairs);
     };
+    if (steps.kinds < kFewestNeighbors * colors.size()) return {};
     if (of_pairs(steps.all) < kLeastSteps || of_pairs(steps.near) < kLeastNearSteps) return {};
     return {static_cast<int>(colors.size()), share, degrees / lone};
 }

@@ -94,7 +94,8 @@ namespace {
 
 // One row of slopes. Returns whether all are usable. The loop has no branches, so that compilers use vectors.
 template <bool kSigned, bool kHasZ>
-bool slope_row(const float* stored_x, const float* stored_y, const float* stored_z, int width, float* p, float* q) {
+bool slope_row(const float* stored_x, const float* stored_y, const float* stored_z, float least_square, int width,
+               float* p, float* q) {
     const auto component = [](float c) { return kSigned ? c : 2.0f * c - 1.0f; };
     int usable_texels = 0;
     for (int i = 0; i < width; ++i) {
@@ -103,7 +104,7 @@ bool slope_row(const float* stored_x, const float* stored_y, const float* stored
         const float z = kHasZ ? component(stored_z[i]) : reconstruct_z(x, y);
         const float square = flat + z * z;
         // Written so that NaN makes it false. Each & needs no jump.
-        const bool usable = (square >= 0.25f) & (square <= 4.0f) & (z >= kLeastZ) & (kHasZ | (flat <= 1.04f));
+        const bool usable = (square >= least_square) & (square <= 4.0f) & (z >= kLeastZ) & (kHasZ | (flat <= 1.04f));
         usable_texels += usable ? 1 : 0;
         const float across = -x / z, up = -y / z;
         p[i] = usable ? across : kNan;
@@ -124,11 +125,13 @@ Slopes slopes_of(const Stored& stored, Rect window) {
     };
     const auto fill = stored.is_signed ? (has_z ? slope_row<true, true> : slope_row<true, false>)
                                        : (has_z ? slope_row<false, true> : slope_row<false, false>);
+    // Blocks with z hold directions; encoders let lengths go where that brings these nearer.
+    const float least_square = stored.in_blocks && has_z ? 0.01f : 0.25f;
     bool unusable = false;
     for (int j = 0; j < window.height; ++j) {
         float *const p = slopes.p.row(j), *const q = slopes.q.row(j);
         unusable |= !fill(row_of(Component::x, j), row_of(Component::y, j), has_z ? row_of(Component::z, j) : nullptr,
-                          window.width, p, q);
+                          least_square, window.width, p, q);
         if (stored.transparent == nullptr) continue;
         for (int i = 0; i < window.width; ++i) {
             if (!stored.transparent->is_transparent(window.x + i, window.y + j)) continue;

@@ -21,24 +21,24 @@ bool lies_flat(const Layer& layer) {
     return layer.tiling_x == 1.0f && layer.tiling_y == 1.0f && layer.offset_y == 0.0f && layer.rotation == 0.0f;
 }
 
-// What to say of a detail whose shape the base does not have: one number of repeats for both axes stretches it. Two
-// that differ are a choice. Empty if it is not visible.
-std::string stretch_text(const Layer& layer, const Extent& detail, const Extent& base) {
-    const double tiling_y = static_cast<double>(layer.tiling_x) * base.height * detail.width /
-                            (static_cast<double>(base.width) * detail.height);
-    const double stretch = tiling_y / layer.tiling_x;
-    constexpr double kVisible = 1.05;
-    if (layer.tiling_x != layer.tiling_y || (stretch < kVisible && stretch > 1.0 / kVisible)) return {};
-    return "is stretched " + rounded_text(std::max(stretch, 1.0 / stretch), 3) + " to 1 on the base of " +
-           std::to_string(base.width) + "x" + std::to_string(base.height) + "; a tiling of " +
-           rounded_text(layer.tiling_x, 4) + "," + rounded_text(tiling_y, 4) + " keeps its shape";
-}
-
 std::string sides_text(double width, double height) {
     const auto side = [](double texels) {
         return std::to_string(static_cast<int>(std::clamp(std::round(texels), 1.0, double{kMaxExtent})));
     };
     return side(width) + "x" + side(height);
+}
+
+// What to say of a detail whose shape the result does not have: one number of repeats for both axes stretches it. Two
+// that differ are a choice. Empty if it is not visible.
+std::string stretch_text(const Layer& layer, const Extent& detail, const Extent& base, const Extent& result) {
+    const double tiling_y = static_cast<double>(layer.tiling_x) * result.height * detail.width /
+                            (static_cast<double>(result.width) * detail.height);
+    const double stretch = tiling_y / layer.tiling_x;
+    constexpr double kVisible = 1.05;
+    if (layer.tiling_x != layer.tiling_y || (stretch < kVisible && stretch > 1.0 / kVisible)) return {};
+    return "is stretched " + rounded_text(std::max(stretch, 1.0 / stretch), 3) + " to 1 " +
+           (result == base ? "on the base of " : "in the result of ") + sides_text(result.width, result.height) +
+           "; a tiling of " + rounded_text(layer.tiling_x, 4) + "," + rounded_text(tiling_y, 4) + " keeps its shape";
 }
 
 // What to say of a detail whose repeats have less than half of its texels in the result. Empty if they have more.
@@ -130,7 +130,8 @@ Result<void> Blending::open(const Execution& execution) {
         const Extent detail = input.shared ? input.shared->chain.levels.front().extent()
                               : input.step ? input.map().extent(0)
                                            : input.chain.levels.front().extent();
-        std::vector<std::string> remarks = {stretch_text(placed, detail, base), cut_text(placed, options_.blend)};
+        std::vector<std::string> remarks = {stretch_text(placed, detail, base, extent_),
+                                            cut_text(placed, options_.blend)};
         if (options_.blend.extent == Extent{}) remarks.push_back(shrink_text(placed, detail, extent_));
         for (std::string& remark : remarks)
             if (!remark.empty()) input.info.remarks.push_back(std::move(remark));
