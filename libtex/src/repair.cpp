@@ -202,6 +202,10 @@ private:
         for (const Region& part : green_parts(levels_->stored(0), finding.regions)) {
             steps.push_back(step);
             steps.back().part = part;
+            // Without a direction that is required, that of more regions stays.
+            if (!options_.checks.require.y) continue;
+            steps.push_back(step);
+            steps.back().part = rest_of(part, levels_->stored(0).extent());
         }
         return steps;
     }
@@ -296,6 +300,7 @@ private:
     // right turn, slopes follow the heights. Numbers read with the right sign do not lean, nor does a z that was lost.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
         if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
+        if (step.kind == RepairKind::invert_part) return find_finding(report, "N401") != nullptr;
         // What moved x and y, as brightness does, cut z off: with z of x and y as they are, all would lean more.
         if (step.kind == RepairKind::rebuild_z && !options_.likely) {
             const Finding* const leaning = find_finding(report, "N207");

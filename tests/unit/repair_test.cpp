@@ -234,6 +234,12 @@ TEST(Repair, TurnsGreenOverInOneHalf) {
         ASSERT_TRUE(done.texture) << done.before.findings.size();
         EXPECT_EQ(plan_of(done), "N402 invert green in a part of the map");
         EXPECT_EQ(codes_in(*done.texture), clean().values);
+        // The direction that is required decides, and not that of more regions.
+        RepairOptions wanted = options;
+        wanted.checks.require.y = YAxis::down;
+        const Repaired down = repaired(texture, wanted);
+        ASSERT_TRUE(down.texture) << down.before.findings.size();
+        EXPECT_EQ(codes_in(*down.texture), flipped.values);
     }
 }
 

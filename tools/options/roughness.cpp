@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -286,6 +287,15 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
                              "that holds metalness",
                              job.task.engine->name),
                  shown);
+    }
+    const Engine* const engine = job.task.engine;
+    if (engine != nullptr && std::string_view(engine->name).starts_with("gltf") &&
+        container_for(path) == Container::ktx2 && format_info(packed.roughness_format).has_blocks()) {
+        job.warn(
+            fmt::format("glTF models hold KTX2 of Basis Universal alone, not of {}, which is for programs that load "
+                        "this file by itself; give models a PNG, of which viewers make the levels",
+                        name_of(kRoughnessFormatNames, packed.roughness_format)),
+            shown);
     }
     if (is_known && packed.levels == 1) {
         job.warn("one level loses no variance, so its roughness is the material's own, unchanged", shown);

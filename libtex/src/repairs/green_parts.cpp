@@ -62,4 +62,16 @@ std::vector<Region> green_parts(const Stored& stored, const std::vector<Region>&
     return parts;
 }
 
+Region rest_of(const Region& part, Extent extent) {
+    Region rest = part;
+    if (part.width < extent.width) {
+        rest.x = part.x > 0 ? 0 : part.width;
+        rest.width = extent.width - part.width;
+    } else {
+        rest.y = part.y > 0 ? 0 : part.height;
+        rest.height = extent.height - part.height;
+    }
+    return rest;
+}
+
 }  // namespace tex::inline v1

@@ -15,4 +15,7 @@ namespace tex::inline v1 {
 // regions of the direction that fewer regions have (N402).
 [[nodiscard]] std::vector<Region> green_parts(const Stored& stored, const std::vector<Region>& few);
 
+// The other side of the line beside a part.
+[[nodiscard]] Region rest_of(const Region& part, Extent extent);
+
 }  // namespace tex::inline v1
