@@ -23,7 +23,8 @@ constexpr double kLoneCodes = 2.5, kLeastLone = 0.1;  // share of the texels
 constexpr double kLeastSteps = 0.1;                   // of all pairs of neighbours: those that differ,
 constexpr double kLeastNearSteps = 0.02;              // by no more than colours lie apart there
 constexpr double kNearStep = 2.5;                     // times the distance to the nearest colour
-constexpr std::size_t kFewestNeighbors = 3;  // of each colour, to its right: patterns that repeat exactly have one or two
+// Colours beside each one, to its right, in the mean: patterns that repeat exactly have one or two.
+constexpr std::size_t kFewestNeighbors = 3;
 
 using StoredColor = std::array<float, 3>;  // x, y and z; 0 for a z that is not stored
 
