@@ -97,13 +97,13 @@ preset() {
 }
 
 # The longest tests of the release, which the nightly run has: all instruction sets but one, pages with real models in a
-# browser, statistics that set thresholds, searches of everything, packages and releases.
+# browser, statistics that set thresholds, searches of everything, packages, releases, and whole builds by consumers.
 # shellcheck disable=SC2034  # used by the scripts that source this file
 longest='Matrix[.].*"(SCALAR|EMU128|SSSE3|SSE4|AVX3|AVX3_DL)"|CheckThresholds|CheckData.FindsPlantedDamage'
 longest+='|ReportPage.LinksReachFilesAnywhereOnALongPage|ReportMesh.DrawsModelsOfOthers'
 longest+='|ReportMesh.LightsAMirroredMeshAsPreviewNormalsDoes|EacSearch.FindsTheOptimumOfEveryBlock'
 longest+='|MeshFit.FindsWrongSpacesOnRealModels|GltfTools.OutputsAreReadAsTheModel/(Helmet|NormalTangent)'
-longest+='|^consumer.packages$|^samples.(release|build_drills)$'
+longest+='|^consumer.(packages|headers|subdirectory)$|^samples.(release|build_drills)$'
 
 # Tests that judge real maps, exhaustive searches, and the longest comparisons of whole runs: their results are the same
 # in every build, because the bytes are. And tests that make the system fail: their results do not depend on the
