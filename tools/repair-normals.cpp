@@ -66,7 +66,7 @@ private:
     [[nodiscard]] Result<void> process_file(cli::Job& job, cli::RepairTotals& totals);
     [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model, cli::RepairTotals& totals);
     [[nodiscard]] RepairOptions options_for(std::optional<YAxis> y) const;
-    void report(cli::Job& job, const std::string& name, const Repaired& repaired) const;
+    void report(cli::Job& job, const std::string& name, const Repaired& repaired, cli::RepairTotals& totals) const;
     [[nodiscard]] Result<Repaired> repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
                                                    const Texture& texture, const Execution& execution) const;
     [[nodiscard]] Result<void> write(cli::Job& job, Texture source, Repaired repaired, const ReadOptions& read);
@@ -159,8 +159,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
 }
 
 Result<void> RepairNormals::check(const std::vector<cli::Task>& tasks) {
-    const auto has_model = [](const cli::Task& task) { return is_model(task.input); };
-    const bool has_models = std::any_of(tasks.begin(), tasks.end(), has_model);
+    const bool has_models = std::ranges::any_of(tasks, [](const cli::Task& task) { return is_model(task.input); });
     if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
     const bool writes_models =
         std::any_of(tasks.begin(), tasks.end(), [](const cli::Task& task) { return task.model_output != nullptr; });
@@ -188,7 +187,9 @@ RepairOptions RepairNormals::options_for(std::optional<YAxis> y) const {
     return options;
 }
 
-void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired) const {
+void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired,
+                           cli::RepairTotals& totals) const {
+    totals.add(repaired);
     for (const FaultLeft& fault : repaired.left) {
         const Finding& left = fault.finding;
         if (left.severity != Severity::error) continue;
@@ -208,14 +209,12 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
 }
 
-// What could not be written counts nowhere.
 Result<void> RepairNormals::process(cli::Job& job) {
     cli::RepairTotals totals;
     auto done = process_file(job, totals);
     if (!done && report_.is_given()) report_.add_failure(job, done.error());
-    if (!done) return done;
     const std::lock_guard lock(mutex_);
-    totals_.add(totals);
+    if (done) totals_.add(totals);  // what could not be written counts nowhere
     return done;
 }
 
@@ -243,8 +242,7 @@ Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& total
                                    : repair(job.task.input, *texture, options_for(output.y), execution);
     if (!repaired) return repaired.error();
     job.report.update(cli::repairs_json(*repaired));
-    report(job, job.task.name(), *repaired);
-    totals.add(*repaired);
+    report(job, job.task.name(), *repaired, totals);
     if (report_.is_given()) {
         const auto y = job.task.model ? output.y.value_or(YAxis::up) : output.y;
         if (auto added = report_.add(job, job.task.name(), *texture, *repaired, y); !added) return added;
@@ -267,13 +265,12 @@ Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector
     if (!repaired || (!is_any(repaired->steps, [](const auto& step) { return is_about_green(*step.rule); }) &&
                       !is_any(repaired->left, [](const auto& left) { return is_about_green(*left.finding.rule); })))
         return repaired;
-    const auto cancels = [](const Finding& finding) { return finding.rule->id == "N707"; };
     const auto model = maps.front()->read(cli::LastModel::Part::all, job.read_options);
     if (!model) return model.error();
     for (const MapOfModel& map : maps) {
         const auto report = check_map(**model, *map->map, {options.checks}, job.read_options, execution.quiet());
         if (!report) return report.error();
-        if (!is_any(report->findings, cancels)) continue;
+        if (!is_any(report->findings, [](const Finding& finding) { return finding.rule->id == "N707"; })) continue;
         for (const Rule& rule : tex::rules()) {
             if (is_about_green(rule)) options.skip.emplace_back(rule.id);
         }
@@ -296,8 +293,7 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         if (!texture) return texture.error();
         auto repaired = repair_in_model(job, maps, *texture, execution);
         if (!repaired) return repaired.error();
-        report(job, maps.front()->name(), *repaired);
-        totals.add(*repaired);
+        report(job, maps.front()->name(), *repaired, totals);
         if (report_.is_given()) {
             const YAxis y = output.y.value_or(YAxis::up);
             if (auto added = report_.add(job, maps.front()->name(), *texture, *repaired, y); !added) return added;

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -21,19 +20,18 @@
 #include <tex/check.h>
 #include <tex/file.h>
 #include <tex/format.h>
-#include <tex/pipeline.h>
 
 #include "cli/file_status.h"
 #include "cli/glob.h"
 #include "cli/json.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
-#include "options/heights.h"
 #include "reports/baseline.h"
 #include "reports/kinds.h"
 #include "tasks/find_files.h"
 #include "tasks/model_output.h"
 #include "threads/fork_join.h"
+#include "tree/height_traits.h"
 #include "tree/infer_rules.h"
 
 namespace tex::cli {
@@ -80,24 +78,6 @@ std::string pack_step(std::optional<YAxis> y, const CheckReport& report, const s
     std::string text;
     for (const std::string& setting : settings) text += (text.empty() ? "" : ", ") + setting;
     return fmt::format("{{ pack = {{ {} }} }}", text);
-}
-
-// What a bake finds in heights.
-struct HeightTraits {
-    bool is_on_ground = false;  // they state the size of their texels, and have slopes of their own
-    bool has_wall = false;      // they do not repeat
-};
-
-HeightTraits traits_of(const std::string& path, const CheckReport& report, const ReadOptions& read) {
-    BakeFileOptions options;
-    options.read = read;
-    options.heights.channel = report.height_bytes.value_or(options.heights.channel);
-    options.auto_strength = true;
-    options.pack.encoding = Encoding::rgb8;
-    options.write.into = std::make_shared<std::vector<std::byte>>();
-    const auto baked = bake_file(path, path, Container::bmp, options, {1, {}});
-    if (!baked) return {};
-    return {baked->heights.ground.has_value(), baked->border_ratio > kWallRatio};
 }
 
 constexpr std::string_view kBakeStep = "{ bake = {";
