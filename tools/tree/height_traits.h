@@ -15,7 +15,7 @@ struct HeightTraits {
     bool has_wall = false;      // they do not repeat
 };
 
-// Of the heights in a file that was checked; all false if they cannot be baked.
+// What the heights in a file that was checked are; all false if they cannot be baked.
 [[nodiscard]] HeightTraits traits_of(const std::string& path, const CheckReport& report, const ReadOptions& read);
 
 }  // namespace tex::cli
