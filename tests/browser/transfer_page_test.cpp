@@ -93,7 +93,7 @@ TEST_F(TransferPage, ShowsMissedTexelsInRed) {
     EXPECT_GT(differing(red, filled), 0.01);
     const Agreement found = compare_with_command("as they were filled");
     EXPECT_GE(found.share, 0.99) << found.command;
-    EXPECT_NE(text(".facts").find("any ray can hit"), std::string::npos);
+    EXPECT_NE(text(".facts").find("of those that longer rays can hit"), std::string::npos);
     for (const int width : {1160, 390}) {
         browser_->set_viewport(width, 900);
         open("page.html");

@@ -224,6 +224,8 @@ TEST_F(BlendNormals, ABaseAloneGetsAnotherSize) {
     does("blend-normals", {"base.exr", "-o", "alone.exr", "--extent", "40x40"});
     does("blend-normals", {"base.exr", "flat.exr", "-o", "flat_on_it.exr", "--extent", "40x40"});
     EXPECT_LT(angle("alone.exr", "flat_on_it.exr"), 0.01);
+    for (const char* option : {"--tiling", "--strength", "--rotate"})
+        refuses({"base.exr", "-o", "x.exr", "--extent", "40x40", option, "1"}, " is for a detail, and there is none");
 }
 
 TEST_F(BlendNormals, MisuseIsRefused) {

@@ -166,7 +166,9 @@ TEST_F(CompareNormals, FoldersAreComparedByTheNamesOfTheirFiles) {
     EXPECT_NE(text.find(" degrees, of old/walls/a.exr\n"), std::string::npos) << text;
     EXPECT_EQ(compare({"old", "up.exr"}).err,
               "compare-normals: error: up.exr: old is a folder, and is compared with another folder\n");
-    EXPECT_EQ(compare({"old", "new", "--heatmap", "h.png"}).err,
+    const Ran pictured = compare({"old", "new", "--heatmap", "h.png"});
+    EXPECT_EQ(pictured.code, 4);
+    EXPECT_EQ(pictured.err,
               "compare-normals: error: old: a folder, and --heatmap, --report and --mesh are for two files: give each "
               "pair by itself\n");
 }

@@ -223,4 +223,15 @@ TEST_F(MeasuredY, FallsBackOnlyIfTheOptionSaysWhereTo) {
     EXPECT_EQ(run(scratch_, "build-normals", {"--no-sync"}).code, 0);
 }
 
+// Blocks hold directions, and encoders let lengths go: short vectors of a rough map count, too.
+TEST(MeasuredYOfBlocks, ShowsInUastcOfARoughMap) {
+    const std::string map = TEX_SOURCE_DIR "/../shared/data/wild4/normal/godotdemos_sand_normal.jpg";
+    if (!std::filesystem::exists(map)) GTEST_SKIP() << "no ../shared/data/wild4";
+    const Scratch scratch;
+    ASSERT_EQ(shell(scratch, "pack-normals " + map + " -o n.ktx2 --format uastc --no-sync --quiet").code, 0);
+    EXPECT_NE(shell(scratch, "check-normals --list-y " + map).out.find(": green points down"), std::string::npos);
+    const Ran ran = shell(scratch, "check-normals --list-y n.ktx2");
+    EXPECT_NE(ran.out.find("n.ktx2: green points down"), std::string::npos) << ran.out;
+}
+
 }  // namespace tex::cli

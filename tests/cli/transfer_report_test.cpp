@@ -53,7 +53,7 @@ TEST_F(TransferPage, ShowsMissedTexelsAndFailures) {
     has("id=\"missed-0\"");
     has("missed texels are red");
     has("texels are missed");
-    has("would hit 95 % of those that any ray can hit");
+    has("; of those that longer rays can hit, ");
     has("class=\"chip error\"");
     const auto picture = read_image(scratch_.path("m.png"));
     ASSERT_TRUE(picture);

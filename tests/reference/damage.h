@@ -3,6 +3,9 @@
 
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include <tex/format.h>
@@ -29,6 +32,11 @@ Codes codes_of(const NormalMap& map);
 // A texture of one level, rgb8 or rgba8; and one of several levels, all with the same channels.
 Texture texture_of(const Codes& codes);
 Texture texture_of(const std::vector<Codes>& levels);
+
+// The nearest code of 8 bits.
+inline unsigned char rounded_code(double v) {
+    return static_cast<unsigned char>(std::clamp(std::floor(v + 0.5), 0.0, 255.0));
+}
 
 Codes flip_green(const Codes& codes);
 Codes exchange(const Codes& codes, int a, int b);  // two channels

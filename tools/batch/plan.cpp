@@ -55,8 +55,7 @@ std::string output_name(const Input& input, const FileOptions& files, const Outp
     // The output would have the extension of the input, which has none.
     std::error_code no_status;
     if (pattern.ends_with("{ext}") && fields.ext.empty() && fs::is_directory(input.name, no_status))
-        throw UsageError(printable(input.name), fmt::format("is a directory; name its files, such as {}",
-                                                            shell_word(printable(input.name) + "/*.png")));
+        throw UsageError(printable(input.name), "is a directory; name its files");
     output.fill(fields);
     if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);

@@ -84,9 +84,10 @@ Result<void> PackCommand::process(Job& job) {
     report(job, *packed);
     const Encoding before = encoding_of(packed->source, job.task), now = packed->pack.encoding;
     if (packed->source.swizzle == kSwizzleYx && now == Encoding::bc5 && job.task.container == Container::dds)
-        repeated_.add(job, job.task.input,
-                      "y comes first (ATI2), and in the output x does, as in BC5; an engine that expects y first would "
-                      "exchange them");
+        repeated_.add(
+            job, job.task.input,
+            "y comes first, as in ATI2 of old, and x in the output, as in BC5; an engine that expects y first "
+            "would exchange them");
     // Nobody chose the encoding, and texels could have stayed in that of the input.
     if (!output.of(job.task.engine).format && format_info(packed->source.format).has_blocks() &&
         now == default_encoding(job.task.container) && before != now) {

@@ -85,6 +85,7 @@ void LayerOptions::add_placement(Command& command) {
 
 void LayerOptions::check(std::size_t count) const {
     const auto fits = [count](const char* name, std::size_t given) {
+        if (given > 0 && count == 0) throw UsageError(fmt::format("{} is for a detail, and there is none", name));
         if (given <= 1 || given == count) return;
         throw UsageError(
             fmt::format("{} is given {} times for {} detail{}", name, given, count, count == 1 ? "" : "s"));

@@ -146,10 +146,10 @@ void RayOptions::judge_missed(Job& job, const TransferredMaps& maps, const std::
     const bool farther = maps.needed_front > maps.front || maps.needed_back > maps.back;
     if (maps.missed > maps.hopeless && !remedy.empty()) {
         sentence += fmt::format(
-            "; rays that reach {:.4g} in front and {:.4g} behind would hit 95 % of those that any ray can hit: {}",
+            "; of those that longer rays can hit, rays of {:.4g} in front and {:.4g} behind would hit 95 %: {}",
             enough(maps.needed_front, maps.diagonal), enough(maps.needed_back, maps.diagonal), advice_of(maps, remedy));
     } else if (maps.missed > maps.hopeless && farther) {
-        sentence += fmt::format("; --front {:.4g} --back {:.4g} would hit 95 % of those that any ray can hit",
+        sentence += fmt::format("; of those that longer rays can hit, --front {:.4g} --back {:.4g} would hit 95 %",
                                 enough(std::max(maps.needed_front, maps.front), maps.diagonal),
                                 enough(std::max(maps.needed_back, maps.back), maps.diagonal));
     }

@@ -292,8 +292,8 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     if (engine != nullptr && std::string_view(engine->name).starts_with("gltf") &&
         container_for(path) == Container::ktx2 && format_info(packed.roughness_format).has_blocks()) {
         job.warn(
-            fmt::format("glTF models hold KTX2 of Basis Universal alone, not of {}, which is for programs that load "
-                        "this file by itself; give models a PNG, of which viewers make the levels",
+            fmt::format("glTF models hold KTX2 of Basis Universal alone, not of {}: this file is for programs that "
+                        "load it by itself",
                         name_of(kRoughnessFormatNames, packed.roughness_format)),
             shown);
     }

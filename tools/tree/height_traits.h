@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// height_traits.h: what decides how heights are baked, found by a bake that is thrown away.
+// height_traits.h: what decides how heights are baked; a bake in memory shows it.
 
 #pragma once
 
@@ -15,7 +15,8 @@ struct HeightTraits {
     bool has_wall = false;      // they do not repeat
 };
 
-// What the heights in a file that was checked are; all false if they cannot be baked.
+// The traits of the heights in `path`, whose check is `report`. All are false if the file cannot be read or baked.
+// Writes no file.
 [[nodiscard]] HeightTraits traits_of(const std::string& path, const CheckReport& report, const ReadOptions& read);
 
 }  // namespace tex::cli

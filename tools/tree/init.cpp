@@ -84,7 +84,7 @@ constexpr std::string_view kBakeStep = "{ bake = {";
 
 std::string bake_step(const CheckReport& report, const HeightTraits& traits) {
     std::string settings = traits.is_on_ground ? "" : " bumpiness = \"auto\"";
-    if (traits.has_wall && !traits.is_on_ground) settings += ", wrap = \"clamp\"";
+    if (traits.has_wall) settings += ", wrap = \"clamp\"";
     if (report.height_bytes) {
         settings += fmt::format("{} channel = \"{}\"", settings.empty() ? "" : ",",
                                 name_of(kHeightChannelNames, *report.height_bytes));

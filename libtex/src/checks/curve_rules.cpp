@@ -200,8 +200,7 @@ OtherTone other_tone(const CheckContext& context, const Centre& centre, bool is_
     OtherTone other;
     other.is_known = by_srgb > (is_near ? kMostOfNear : kLeastError) && least < kLead * by_srgb &&
                      find_tone(context.stored, centre, background);
-    // 60 maps went through the curve: those whose histogram does not show it have at most 1.0 code of error. 58 had
-    // another lightness or gamma: those that centre as near have 1.7 codes and more.
+    // The figures are in tests/bench/VERDICTS.md.
     constexpr double kMostOfSure = 1.2;
     const CombFit in_codes = CodeComb(context.stored, background).fit_srgb(is_light);
     other.is_likely = !in_codes.is_proof() && !(is_near && by_srgb <= kMostOfSure);

@@ -251,9 +251,9 @@ void check_palette(const CheckContext& context, const Lattice& lattice, Findings
     const Palette palette = find_palette(context.stored);
     if (palette.colors == 0) return;
     Finding& finding =
-        findings.add("N317", std::to_string(palette.colors) + " colours; those of " + percent(palette.share) +
-                                 " of the texels are 3 codes or more from all others, and in the mean " +
-                                 decimal(palette.degrees, 1) + " degrees from the nearest one");
+        findings.add("N317", std::to_string(palette.colors) + " colours in all; " + percent(palette.share) +
+                                 " of the texels are 3 codes or more from the nearest other colour, " +
+                                 decimal(palette.degrees, 1) + " degrees in the mean");
     finding.figure = palette.degrees;
     finding.unit = "degrees";
     finding.confidence = 0.95;

@@ -69,13 +69,13 @@ double degrees_between(const StoredColor& a, const StoredColor& b) {
     return kDegrees * std::acos(std::clamp(u[0] * v[0] + u[1] * v[1] + u[2] * v[2], -1.0, 1.0));
 }
 
-// The colours of a picture that has so few; nothing if it has more, or few texels.
-PaletteColors few_colors(const Stored& stored) {
+// The colours of every `step`-th row, if there are so few; nothing if there are more, or few texels.
+PaletteColors few_colors(const Stored& stored, int step) {
     if (stored.extent().texels() < kLeastManyTexels) return {};
     const ColorRows rows(stored);
     PaletteColors colors;
     auto last = colors.end();  // neighbours often have the same colour
-    for (int j = 0; j < stored.extent().height; ++j) {
+    for (int j = 0; j < stored.extent().height; j += step) {
         for (int i = 0; i < stored.extent().width; ++i) {
             const StoredColor color = rows.at(i, j);
             if (last == colors.end() || last->first != color) last = colors.try_emplace(color).first;
@@ -83,6 +83,11 @@ PaletteColors few_colors(const Stored& stored) {
             if (colors.size() > kLargestPalette) return {};
         }
     }
+    return colors;
+}
+
+// Numbers the colours, and finds how far each is from the nearest other one.
+void find_nearest(PaletteColors& colors) {
     std::size_t index = 0;
     for (auto& [color, one] : colors) {
         one.index = index++;
@@ -92,7 +97,6 @@ PaletteColors few_colors(const Stored& stored) {
             one.degrees = std::min(one.degrees, degrees_between(color, other));
         }
     }
-    return colors;
 }
 
 // Neighbours in rows.
@@ -103,12 +107,11 @@ struct ColorSteps {
     std::size_t kinds = 0;  // of pairs of colours that differ
 };
 
-ColorSteps count_steps(const Stored& stored, const PaletteColors& colors) {
-    constexpr int kMostRows = 1024;
+ColorSteps count_steps(const Stored& stored, const PaletteColors& colors, int step) {
     const ColorRows rows(stored);
     ColorSteps steps;
     std::vector<bool> is_met(colors.size() * colors.size());
-    for (int j = 0; j < stored.extent().height; j += 1 + stored.extent().height / kMostRows) {
+    for (int j = 0; j < stored.extent().height; j += step) {
         for (int i = 1; i < stored.extent().width; ++i) {
             const StoredColor a = rows.at(i - 1, j), b = rows.at(i, j);
             ++steps.pairs;
@@ -128,23 +131,28 @@ ColorSteps count_steps(const Stored& stored, const PaletteColors& colors) {
 }  // namespace
 
 Palette find_palette(const Stored& stored) {
-    const PaletteColors colors = few_colors(stored);
+    constexpr int kMostRows = 1024;
+    const int step = 1 + (stored.extent().height - 1) / kMostRows;
+    PaletteColors colors = few_colors(stored, step);
     if (colors.size() < kSmallestPalette) return {};
-    double lone = 0.0, degrees = 0.0;
+    find_nearest(colors);
+    double all = 0.0, lone = 0.0, degrees = 0.0;
     for (const auto& [color, one] : colors) {
+        const auto texels = static_cast<double>(one.texels);
+        all += texels;
         if (one.codes <= kLoneCodes) continue;
-        lone += static_cast<double>(one.texels);
-        degrees += static_cast<double>(one.texels) * one.degrees;
+        lone += texels;
+        degrees += texels * one.degrees;
     }
-    const double share = lone / static_cast<double>(stored.extent().texels());
-    if (share < kLeastLone) return {};
-    const ColorSteps steps = count_steps(stored, colors);
+    if (lone < kLeastLone * all) return {};
+    const ColorSteps steps = count_steps(stored, colors, step);
     const auto of_pairs = [&](std::int64_t count) {
         return static_cast<double>(count) / static_cast<double>(steps.pairs);
     };
     if (steps.kinds < kFewestNeighbors * colors.size()) return {};
     if (of_pairs(steps.all) < kLeastSteps || of_pairs(steps.near) < kLeastNearSteps) return {};
-    return {static_cast<int>(colors.size()), share, degrees / lone};
+    const std::size_t count = step > 1 ? few_colors(stored, 1).size() : colors.size();  // 0: other rows have more
+    return {static_cast<int>(count), lone / all, degrees / lone};
 }
 
 int few_levels(const Stored& stored) {

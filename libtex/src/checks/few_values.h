@@ -7,7 +7,7 @@
 
 namespace tex::inline v1 {
 
-// What a palette of 256 colours or less leaves of a normal map: colours that lie apart, among neighbours that lie as
+// What a palette of 256 colours or fewer leaves of a normal map: colours that lie apart, among neighbours that lie as
 // far from each other.
 struct Palette {
     int colors = 0;        // 0: there is none

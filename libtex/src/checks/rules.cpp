@@ -275,9 +275,9 @@ constexpr Rule kTextureRules[] = {
      "Nothing brings them back. Maps without such bumps are not judged.",
      "Go back to the source, and export PNG, or JPEG with 4:4:4.", "N201 N202 N203 N219"},
     {"N317", "palette", damage, warning, true, "The map has few colours, which lie apart.",
-     "GIF, PNG of 8 bits a texel and programs that make PNGs smaller (pngquant, TinyPNG) choose 256 colours or less, "
-     "for eyes and not for directions. Smooth surfaces show facets or grain in reflections. Nothing brings back what "
-     "lay between the colours.",
+     "GIF, PNG with a palette and programs that make PNGs smaller (pngquant, TinyPNG) keep 256 colours or fewer, which "
+     "they choose for the eye. Smooth surfaces then show facets or grain in reflections. Nothing brings back what lay "
+     "between the colours.",
      "Go back to the source, and make PNGs smaller without loss (oxipng, lossless WebP).", "N305 N306"},
 
     // -- convention -------------------------------------------------------------------------------------------
