@@ -83,6 +83,7 @@ export class Wasi {
   #memory;
   #files = new Map();
   #folders;
+  used = false; // whether bytes have gone through a standard stream
 
   /**
    * `created` and `removed` are called with the names of files that are being written and have no name of their own
@@ -202,6 +203,7 @@ export class Wasi {
   }
   #transfer(number, buffers, count, done, move) {
     const file = this.#file(number);
+    if (file.stream) this.used = true;
     const total = this.#each(buffers, count, file.at ?? null, (bytes, position) => move(file, bytes, position));
     if (file.at !== undefined) file.at += BigInt(total);
     this.#view.setUint32(done, total, true);
