@@ -19,6 +19,7 @@ wasm_flags=(--target=wasm32-wasi -isystem "$PWD/$here/one_thread" -O2 -msimd128 
     -D_WASI_EMULATED_PROCESS_CLOCKS -D_WASI_EMULATED_GETPID)
 hardening="${wasm_flags[*]}"
 position=(-DCMAKE_POSITION_INDEPENDENT_CODE=OFF)
+small=(-DCMAKE_C_FLAGS_RELEASE="-Os -DNDEBUG" -DCMAKE_CXX_FLAGS_RELEASE="-Os -DNDEBUG")
 
 # The source of LLVM is 160 MB, of which three folders are needed.
 fetch_llvm() {
@@ -58,21 +59,24 @@ compile_all() {
 }
 
 # The C++ library once more, from the sources of Debian's own package, whose build has no exceptions (a failed
-# allocation ends it), no mutexes and no files. Its headers are used as they are, with another __config_site.
+# allocation ends it), no mutexes and no files. Its headers are used as they are, with another __config_site. Two parts
+# are left out because they are large: the demangler (the name of an exception that nothing catches is printed as it is)
+# and ryu/d2fixed.cpp, in whose place is digits.cpp.
 with_cxx() {
     local root=$work/sources/$llvm source sources=()
     for source in "$root"/libcxx/src/{,filesystem/,ryu/}*.cpp "$root"/libcxxabi/src/*.cpp; do
         case $(basename "$source") in
             random_shuffle.cpp | legacy_pointer_safety.cpp | cxa_noexception.cpp | cxa_thread_atexit.cpp) continue ;;
-            new.cpp | int128_builtins.cpp) continue ;;
+            new.cpp | int128_builtins.cpp | cxa_demangle.cpp | d2fixed.cpp) continue ;;
         esac
         sources+=("$source")
     done
-    compile_all cxx libc++.a -I"$here/absent" -I"$root/libcxx/src" -I"$root/libcxxabi/include" \
+    compile_all cxx libc++.a -Os -I"$here/absent" -I"$root/libcxx/src" -I"$root/libcxxabi/include" \
         -I"$root/libunwind/include" -I"$root/libunwind/src" -D_LIBCPP_BUILDING_LIBRARY \
         -DLIBCXX_BUILDING_LIBCXXABI -D_LIBCXXABI_BUILDING_LIBRARY \
-        -D_LIBCXXABI_HAS_NO_THREADS -D_LIBUNWIND_HAS_NO_THREADS -D_LIBUNWIND_HIDE_SYMBOLS -DNDEBUG -w -- \
-        "${sources[@]}" "$root/libunwind/src/Unwind-wasm.c" "$here/setjmp.c" "$here/realpath.c"
+        -DLIBCXXABI_NON_DEMANGLING_TERMINATE -D_LIBCXXABI_HAS_NO_THREADS -D_LIBUNWIND_HAS_NO_THREADS \
+        -D_LIBUNWIND_HIDE_SYMBOLS -DNDEBUG -w -- \
+        "${sources[@]}" "$root/libunwind/src/Unwind-wasm.c" "$here"/{setjmp.c,realpath.c,digits.cpp}
     cp "$prefix/lib/libc++.a" "$prefix/lib/libc++abi.a"  # clang names both
 }
 
@@ -109,10 +113,24 @@ with_c_libraries() {
     root=$(source_of libzstd)
     # The way in which it looks for matches, and so its bytes, must be those of processors with vectors.
     sed -i 's/kHasSIMD128 = 0/kHasSIMD128 = 1/' "$root/lib/compress/zstd_compress.c"
+    # libtex has no dictionaries: the functions that search them need not be linked.
+    sed -Ei '/^ZSTD_blockCompressor ZSTD_selectBlock/,/^}/ s/_(dictMatchState|dedicatedDictSearch)//' \
+        "$root/lib/compress/zstd_compress.c"
     cp "$root/lib/zstd.h" "$root/lib/zstd_errors.h" "$prefix/include"
     compile_all libzstd libzstd.a -DZSTD_DISABLE_ASM -DZSTD_LEGACY_SUPPORT=0 -w -- "$root"/lib/common/*.c \
         "$root"/lib/compress/*.c "$root"/lib/decompress/*.c
     pkgconfig libzstd 1.5.4 zstd
+}
+
+# OpenEXR's headers and its exceptions without std::stringstream, which would link all of <locale>. $1: its sources.
+without_streams() {
+    local stream='std::stringstream' text='IEX_NAMESPACE::Text'
+    ! grep -q "$text" "$1/Iex/IexMacros.h" || return 0
+    sed -i -e "s/$stream/$text/" -e 's/ (_iex_\(append\|replace\)_s)/ (_iex_\1_s.str ())/' \
+        -e "/^#include \"IexForward.h\"/r $here/iex_text.inc" "$1/Iex/IexMacros.h"
+    sed -i -e '0,/^#include/s//#include <IexMacros.h>\n#include/' -e "s/$stream s;/$text s;/" \
+        "$1"/OpenEXR/Imf{Header,ChannelListAttribute}.cpp
+    sed -i -e "/StdOSStream oss;/{r $here/imf_bytes.inc" -e 'd}' "$1/OpenEXR/ImfHeader.cpp"
 }
 
 build_wasm_libraries() {
@@ -128,13 +146,15 @@ build_wasm_libraries() {
     printf 'add_library(TBB::tbb INTERFACE IMPORTED)\n' >"$prefix/lib/cmake/TBB/TBBConfig.cmake"
     with_c_libraries
     with_isal_in_c
-    with_cmake libpng1.6 -DPNG_SHARED=OFF -DPNG_TESTS=OFF "${position[@]}" -DPNG_EXECUTABLES=OFF \
+    with_cmake libpng1.6 "${small[@]}" -DPNG_SHARED=OFF -DPNG_TESTS=OFF "${position[@]}" -DPNG_EXECUTABLES=OFF \
         -DPNG_HARDWARE_OPTIMIZATIONS=OFF -DM_LIBRARY=m -DPNG_BUILD_ZLIB=OFF
-    with_cmake imath -DPYTHON=OFF "${position[@]}"
+    # Floats of halves come from the bits, not from a table of 256 KB.
+    with_cmake imath "${small[@]}" -DPYTHON=OFF "${position[@]}" -DIMATH_HALF_USE_LOOKUP_TABLE=OFF
     # OpenEXR 3.1's new core asks whether the setting is defined, not what it is.
     sed -i 's/^#ifdef ILM\(THREAD\|BASE\)_THREADING_ENABLED/#if ILMTHREAD_THREADING_ENABLED/' \
         "$(source_of openexr)"/src/lib/OpenEXRCore/*.[ch]
-    with_cmake openexr -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF -DOPENEXR_INSTALL_TOOLS=OFF \
-        -DOPENEXR_ENABLE_THREADING=OFF "${position[@]}"
+    without_streams "$(source_of openexr)/src/lib"
+    with_cmake openexr "${small[@]}" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF \
+        -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_ENABLE_THREADING=OFF "${position[@]}"
     with_cmake highway -DHWY_ENABLE_TESTS=OFF -DHWY_ENABLE_EXAMPLES=OFF -DHWY_ENABLE_CONTRIB=OFF "${position[@]}"
 }
