@@ -309,8 +309,7 @@ Result<cli::Json> CheckNormals::judge_in_model(cli::Job& job, CheckReport report
 
 cli::ExitCode CheckNormals::finish(cli::Console& console) {
     for (const std::string& sentence : idle_rules_) console.warning(sentence);
-    totals_.other_files = files.other_files;
-    totals_.made_files = files.made_files;
+    totals_.left_out = files.left_out();
     const std::string summary = classifies_ ? kinds_.text() : totals_.text();
     const cli::ExitCode printed = running.json ? cli::ExitCode::done : console.print(summary + "\n");
     return std::max(printed, documents_.write(console, summary));

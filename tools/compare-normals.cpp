@@ -43,8 +43,8 @@ private:
     [[nodiscard]] Result<cli::ExitCode> compare_pair(cli::Console& console, const cli::MapPair& pair,
                                                      const cli::MeshSpace* mesh);
     [[nodiscard]] Result<cli::ExitCode> draw_curve(cli::Console& console);
-    [[nodiscard]] Result<void> write_page(cli::Console& console, const cli::MapPair& pair,
-                                          const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees);
+    [[nodiscard]] Result<void> add_to_page(cli::Console& console, const cli::MapPair& pair,
+                                           const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees);
 
     cli::PairOptions pair_;
     cli::TangentSpaceOptions mesh_;
@@ -53,6 +53,7 @@ private:
     cli::RunOptions running_;
     std::vector<std::string> sources_;  // everything that is read
     bool has_folders_ = false;
+    std::size_t maps_ = 0;  // that are compared
     cli::FolderTally tally_;
     cli::ComparisonRun run_{{}, pair_.warnings()};
 };
@@ -102,7 +103,9 @@ cli::ExitCode CompareNormals::work(cli::Console& console) {
     host.begin();
     auto code = curve_.is_asked() ? draw_curve(console) : compare_inputs(console);
     if (code) {
-        if (auto written = documents_.write_depfile(sources_); !written) code = written.error();
+        auto written = documents_.write_page(maps_ > 2 ? tally_.text() : "");
+        if (written) written = documents_.write_depfile(sources_);
+        if (!written) code = written.error();
     }
     console.clear_progress();
     if (!host.interruption().empty()) host.end_interrupted();
@@ -149,9 +152,10 @@ Result<cli::ExitCode> CompareNormals::compare_inputs(cli::Console& console) {
 // What fails for one pair does not keep the others from being compared.
 Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
-    if (documents_.has_any() || mesh_.has_mesh())
-        return Error{ErrorCode::bad_option, names[0],
-                     "a folder, and --heatmap, --report and --mesh are for two files: give each pair by itself"};
+    if (documents_.has_heat_map() || mesh_.has_mesh())
+        throw cli::UsageError(cli::printable(names[0]),
+                              "is a folder, and --heatmap and --mesh are for two files; "
+                              "--report takes folders");
     const auto pairs = cli::folder_pairs(names[0], names[1], running_.read);
     if (!pairs) return pairs.error();
     for (std::size_t k = 0; k < 2; ++k) {
@@ -165,7 +169,12 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
                    fmt::format("files left out, because they are no normal maps: {}", pairs->others));
     if (pairs->files.empty())
         return Error{ErrorCode::bad_option, names[1], fmt::format("shares no normal map with {}", names[0])};
+    for (const auto& [a, b] : pairs->files) sources_.insert(sources_.end(), {a, b});
+    std::vector<std::string> kept = sources_;
+    for (const auto& alone : pairs->alone) kept.insert(kept.end(), alone.begin(), alone.end());
+    documents_.check(kept);
     has_folders_ = true;
+    maps_ = 2 * pairs->files.size();
     auto code = cli::ExitCode::done;
     for (const auto& [a, b] : pairs->files) {
         if (!console.host().interruption().empty()) break;
@@ -174,11 +183,14 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
         if (!running_.json)
             code = std::max(code, console.print(fmt::format("{}, {}:\n", cli::printable(a), cli::printable(b))));
         const auto compared = compare_files(console, run_.inputs, nullptr);
-        if (!compared) tally_.add_failure();
+        if (!compared) {
+            tally_.add_failure();
+            documents_.add_failure(a, compared.error());
+        }
         code = std::max(code, compared ? *compared : report_failure(console, compared.error()));
         pair_.forget_warnings();
     }
-    return running_.json ? code : std::max(code, console.print(tally_.text()));
+    return running_.json ? code : std::max(code, console.print(tally_.text() + "\n"));
 }
 
 Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console, const std::vector<std::string>& names,
@@ -187,11 +199,11 @@ Result<cli::ExitCode> CompareNormals::compare_files(cli::Console& console, const
         names, mesh != nullptr ? "" : mesh_.material(), running_.read,
         [&](const std::string& file, const std::string& sentence) { pair_.warn(console, file, sentence); });
     if (!pairs) return pairs.error();
-    if (pairs->size() > 1 && documents_.has_any()) {
+    if (pairs->size() > 1 && documents_.has_heat_map()) {
         return Error{ErrorCode::bad_option, names[0],
-                     fmt::format("{} maps are compared, and --heatmap and --report show two: give --material",
-                                 2 * pairs->size())};
+                     fmt::format("{} maps are compared, and --heatmap shows two: give --material", 2 * pairs->size())};
     }
+    maps_ = std::max(maps_, 2 * pairs->size());
     auto code = cli::ExitCode::done;
     for (const cli::MapPair& pair : *pairs) {
         run_.material = pair.material;
@@ -237,8 +249,9 @@ Result<cli::ExitCode> CompareNormals::compare_pair(cli::Console& console, const 
         if (auto written = documents_.write_heat_map(*comparison); !written) return written.error();
         degrees = std::move(comparison->degrees);
     }
-    if (!documents_.has_page()) return code;
-    if (auto written = write_page(console, pair, levels, degrees); !written) return written.error();
+    // Among many pairs, those that do not differ have no pictures.
+    if (!documents_.has_page() || (maps_ > 2 && levels.front().error.max == 0.0)) return code;
+    if (auto added = add_to_page(console, pair, levels, degrees); !added) return added.error();
     return code;
 }
 
@@ -266,8 +279,8 @@ Result<cli::ExitCode> CompareNormals::draw_curve(cli::Console& console) {
     return code;
 }
 
-Result<void> CompareNormals::write_page(cli::Console& console, const cli::MapPair& pair,
-                                        const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) {
+Result<void> CompareNormals::add_to_page(cli::Console& console, const cli::MapPair& pair,
+                                         const std::vector<cli::ComparedLevel>& levels, const Plane<float>& degrees) {
     std::vector<cli::HtmlMap> maps;
     for (int k = 0; k < 2; ++k) {
         const cli::ComparedMap& compared = pair.maps[k];
@@ -275,12 +288,12 @@ Result<void> CompareNormals::write_page(cli::Console& console, const cli::MapPai
         const Execution shown = running_.step(console, 0.8 + 0.1 * k, 0.9 + 0.1 * k, name);
         const auto texture = pair_.read(compared, k, running_.read, console, shown);
         if (!texture) return texture.error();
-        auto map =
-            cli::draw_html_map(name, *texture, texture->swizzle, texture->y_axis, nullptr, cli::html_sizes(1), shown);
+        auto map = cli::draw_html_map(name, *texture, texture->swizzle, texture->y_axis, nullptr,
+                                      cli::html_sizes(std::max<std::size_t>(1, maps_ / 2)), shown);
         if (!map) return map.error();
         maps.push_back(std::move(*map));
     }
-    return documents_.write_page(levels, std::move(maps[0]), std::move(maps[1]), degrees);
+    return documents_.add_pair(levels, std::move(maps[0]), std::move(maps[1]), degrees);
 }
 
 const cli::Registered<CompareNormals> kRegistered(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,11 +26,11 @@
 #include "tasks/model_output.h"
 #include "tasks/name_pattern.h"
 #include "tasks/written_levels.h"
+#include "tree/state.h"
 
 namespace {
 
 using namespace tex;
-
 using Bytes = std::shared_ptr<const std::vector<std::byte>>;
 using MapOfModel = std::shared_ptr<const cli::ModelInput>;
 
@@ -37,7 +38,6 @@ bool is_about_green(const Rule& rule) { return rule.family == RuleFamily::conven
 
 const std::vector<std::string> kStorage = {"--format",     "--container", "--metric",        "--rdo-mean",
                                            "--dds-header", "--dds-mark",  "--supercompress", "--quality"};
-constexpr std::size_t kMostBytes = static_cast<std::size_t>(-1) / 2;  // of an input
 
 class RepairNormals : public cli::Converter {
 public:
@@ -97,12 +97,17 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     command.usage("NORMALS... --out-dir DIR");
     command.usage("NORMALS... --dry-run");
     command.usage("MODEL -o MODEL");
-    command.input("NORMALS...", "normal maps, and glTF models with their maps; - is standard input");
+    command.usage("NORMALS... --in-place");
+    command.input("NORMALS...", "normal maps, glTF models with their maps, and folders of these; - is standard input");
     command.finds_things();
     files.writes_nothing = [this] { return dry_run_; };
+    files.reads_folders = true;
+    files.made_in = cli::files_made_by_builds;
     files.add(command);
+    command.flag(files.in_place, "--in-place", "write each map that is repaired over its input")
+        .often(4, "write each map over its input");
     command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
-        .often(4, "print what would be done, and write nothing");
+        .often(5, "print what would be done, and write nothing");
     report_.add(command);
     command.group("Repairs");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
@@ -146,11 +151,10 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
     command.check([this] {
-        if (!dry_run_) return;
         for (const std::string& option : command.given_of({"--update", "--depfile"}))
-            throw cli::UsageError(fmt::format("--dry-run and {} exclude each other", option));
+            if (dry_run_) throw cli::UsageError(fmt::format("--dry-run and {} exclude each other", option));
     });
-    command.example("repair-normals 'art/**/*_n.png' --out-dir mended", "Undoes what the texels prove.");
+    command.example("repair-normals art --out-dir mended", "Undoes what the texels prove in a whole folder.");
     command.example("repair-normals 'art/**/*_n.png' --dry-run --report plan.html",
                     "What would be done, and by which angle.");
     command.example("repair-normals scene.glb -o mended.glb", "The maps of a model, and nothing else of it.");
@@ -162,7 +166,7 @@ Result<void> RepairNormals::check(const std::vector<cli::Task>& tasks) {
     const bool has_models = std::ranges::any_of(tasks, [](const cli::Task& task) { return is_model(task.input); });
     if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
     const bool writes_models =
-        std::any_of(tasks.begin(), tasks.end(), [](const cli::Task& task) { return task.model_output != nullptr; });
+        std::ranges::any_of(tasks, [](const auto& task) { return task.model_output != nullptr; });
     for (const std::string& option : command.given_of({"--update", "--depfile"})) {
         // Which files are beside a model depends on which of its maps change.
         if (writes_models) throw cli::UsageError(fmt::format("{} is not for models that are written", option));
@@ -198,13 +202,8 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
         break;
     }
     for (const RepairStep& step : repaired.steps) {
-        if (step.rule->id != "N220") continue;
         const bool is_in_model = job.task.model != nullptr;
-        job.warn(
-            std::string("blue alone was inverted back; if bumps look like dents now, the whole picture was "
-                        "inverted: ") +
-                (is_in_model ? "invert it in an image editor instead" : "scale-normals --scale -1 turns x and y, too"),
-            is_in_model ? "" : name);
+        if (step.rule->id == "N220") job.warn(cli::inversion_words(is_in_model), is_in_model ? "" : name);
     }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
 }
@@ -229,7 +228,7 @@ Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& total
     if (job.task.model) {
         if (auto opened = job.task.model->open(read); !opened) return opened;
     } else if (!cli::is_special_file(job.task.input)) {
-        const auto text = cli::read_text_file(job.task.input, kMostBytes);
+        const auto text = cli::read_text_file(job.task.input, PTRDIFF_MAX);
         if (!text) return text.error();
         const auto* const first = reinterpret_cast<const std::byte*>(text->data());
         read.bytes = std::make_shared<const std::vector<std::byte>>(first, first + text->size());
@@ -261,16 +260,16 @@ Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector
     RepairOptions options = options_for(output.y.value_or(YAxis::up));
     if (!output.y) options.checks.severity.push_back({"N401", Severity::warning});
     auto repaired = repair(maps.front()->name(), texture, options, execution);
-    const auto is_any = [](const auto& list, const auto& of) { return std::any_of(list.begin(), list.end(), of); };
-    if (!repaired || (!is_any(repaired->steps, [](const auto& step) { return is_about_green(*step.rule); }) &&
-                      !is_any(repaired->left, [](const auto& left) { return is_about_green(*left.finding.rule); })))
+    using std::ranges::any_of;
+    if (!repaired || (!any_of(repaired->steps, [](const auto& step) { return is_about_green(*step.rule); }) &&
+                      !any_of(repaired->left, [](const auto& left) { return is_about_green(*left.finding.rule); })))
         return repaired;
     const auto model = maps.front()->read(cli::LastModel::Part::all, job.read_options);
     if (!model) return model.error();
     for (const MapOfModel& map : maps) {
         const auto report = check_map(**model, *map->map, {options.checks}, job.read_options, execution.quiet());
         if (!report) return report.error();
-        if (!is_any(report->findings, [](const Finding& finding) { return finding.rule->id == "N707"; })) continue;
+        if (!any_of(report->findings, [](const Finding& finding) { return finding.rule->id == "N707"; })) continue;
         for (const Rule& rule : tex::rules()) {
             if (is_about_green(rule)) options.skip.emplace_back(rule.id);
         }
@@ -343,10 +342,11 @@ Result<void> RepairNormals::write(cli::Job& job, Texture source, Repaired repair
 
 // A map without faults stays as it is, with all that its file says.
 Result<void> RepairNormals::copy(cli::Job& job, const std::vector<std::byte>& bytes) {
-    if (auto written = write_file(job.task.output, bytes, output.write_options(job)); !written) return written;
+    auto written = write_file(job.task.output, bytes, output.write_options(job));
+    if (!written) return written;
     job.wrote(job.task.output);
     job.report["bytes"] = bytes.size();
-    return {};
+    return written;
 }
 
 // How a map is stored as pack-normals does it.
@@ -388,7 +388,7 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes by
 }
 
 cli::ExitCode RepairNormals::finish(cli::Console& console) {
-    const std::string summary = totals_.text(dry_run_);
+    const std::string summary = totals_.text(dry_run_) + files.left_out();
     const cli::ExitCode code = report_.write(console, summary);
     if (is_step_ || running.json || writes_to_output() || totals_.maps == 0) return code;
     return std::max(code, console.print(summary + "\n"));

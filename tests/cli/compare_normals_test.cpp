@@ -167,10 +167,18 @@ TEST_F(CompareNormals, FoldersAreComparedByTheNamesOfTheirFiles) {
     EXPECT_EQ(compare({"old", "up.exr"}).err,
               "compare-normals: error: up.exr: old is a folder, and is compared with another folder\n");
     const Ran pictured = compare({"old", "new", "--heatmap", "h.png"});
-    EXPECT_EQ(pictured.code, 4);
-    EXPECT_EQ(pictured.err,
-              "compare-normals: error: old: a folder, and --heatmap, --report and --mesh are for two files: give each "
-              "pair by itself\n");
+    EXPECT_EQ(pictured.code, 2);
+    EXPECT_NE(pictured.err.find("old: is a folder, and --heatmap and --mesh are for two files"), std::string::npos);
+    // The page has the pairs that differ and those that failed, and replaces no file of the folders.
+    ASSERT_EQ(compare({"old", "new", "--report", "page.html", "--depfile", "d"}).code, 4);
+    const std::string page = scratch_.read("page.html"), read = scratch_.read("d");
+    EXPECT_NE(page.find("maps compared: 2, of which 1 differ; files that failed: 1; largest mean"), std::string::npos);
+    EXPECT_NE(page.find("old/walls/a.exr and new/walls/a.dds"), std::string::npos);
+    EXPECT_NE(page.find("old/broken.dds"), std::string::npos);
+    EXPECT_EQ(page.find("old/up.exr and"), std::string::npos);
+    EXPECT_NE(read.find(" new/walls/a.dds"), std::string::npos) << read;
+    for (const char* kept : {"old/up.exr", "new/walls/a.dds", "old/gone.exr"})
+        EXPECT_EQ(compare({"old", "new", "--report", kept}).code, 2) << kept;
 }
 
 TEST_F(CompareNormals, HeatMapHasTheMapAndALegend) {

@@ -251,7 +251,7 @@ TEST_F(ModelInputs, TwoModelsAreComparedByTheirMaterials) {
     refuses("compare-normals a.gltf n.png", 4,
             "has 2 normal maps, and n.png is one: give --material, which is one of "
             "wood, stone");
-    refuses("compare-normals a.gltf b.gltf --heatmap x.png", 4, "--heatmap and --report show two: give --material");
+    refuses("compare-normals a.gltf b.gltf --heatmap x.png", 4, "--heatmap shows two: give --material");
     refuses("compare-normals a.gltf c.gltf --material wood", 4, "c.gltf: has no material \"wood\"");
     refuses("compare-normals a.gltf b.gltf --heatmap half.png", 2, "half.png");
     refuses("compare-normals a.gltf b.gltf --mesh a.gltf", 4, "--mesh is for maps without their mesh");

@@ -180,6 +180,40 @@ TEST_F(RepairNormals, AnInputIsItsOwnOutputOnlyIfItIsNamed) {
     EXPECT_EQ(go({"light.png", "-o", "link.png"}).code, 2);
 }
 
+// A folder is repaired with its tree, or where it lies; what an earlier run wrote into it is no input.
+TEST_F(RepairNormals, FoldersKeepTheirTreeOrAreRepairedInPlace) {
+    const Ran made = shell(scratch_,
+                           "mkdir -p art/deep art/.git && cp light.png bgr.png art && cp bgr.png art/deep && "
+                           "cp bgr.png art/.git && cp clean.png art && echo text > art/notes.txt");
+    ASSERT_EQ(made.code, 0) << made.err;
+    for (const char* out_dir : {"mended", "art/mended", "art/mended"}) {
+        const Ran ran = go({"art", "--out-dir", out_dir});
+        EXPECT_EQ(ran.code, 0) << ran.err;
+        EXPECT_NE(ran.out.find("4 maps: 3 repaired, 1 without a fault to repair; 1 file left out, which is no "
+                               "picture\n"),
+                  std::string::npos)
+            << ran.out;
+        EXPECT_EQ(bytes_of(std::string(out_dir) + "/deep/bgr.png"), clean_);
+    }
+    std::filesystem::remove_all(scratch_.path("art/mended"));
+    const auto written = std::filesystem::last_write_time(scratch_.path("art/clean.png"));
+    EXPECT_EQ(go({"art", "--in-place", "--dry-run"}).code, 0);
+    EXPECT_NE(bytes_of("art/bgr.png"), clean_);
+    EXPECT_EQ(go({"art/", "--in-place"}).code, 0);
+    EXPECT_EQ(bytes_of("art/bgr.png"), clean_);
+    EXPECT_EQ(bytes_of("art/deep/bgr.png"), clean_);
+    EXPECT_NE(bytes_of("art/.git/bgr.png"), clean_);
+    EXPECT_EQ(std::filesystem::last_write_time(scratch_.path("art/clean.png")), written);
+    const std::vector<std::vector<std::string>> refused = {{"bgr.png", "--in-place", "-o", "a.png"},
+                                                           {"bgr.png", "--in-place", "--out-dir", "."},
+                                                           {"-", "--in-place"},
+                                                           {"bgr.png", "--in-place", "--no-clobber"}};
+    for (const auto& line : refused) EXPECT_EQ(go(line).code, 2) << line.back();
+    const Ran pack = run(scratch_, "pack-normals", {"art", "--out-dir", "x"});
+    EXPECT_EQ(pack.code, 3);
+    EXPECT_NE(pack.err.find("art: is a directory; name its files, such as 'art/*.png'"), std::string::npos) << pack.err;
+}
+
 TEST_F(RepairNormals, AnotherEncodingIsThatOfPackNormals) {
     ASSERT_EQ(run(scratch_, "pack-normals", {"clean.png", "-o", "packed.dds", "--format", "bc5"}).code, 0);
     ASSERT_EQ(go({"clean.png", "-o", "mended.dds", "--format", "bc5"}).code, 0);

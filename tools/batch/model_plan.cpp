@@ -51,7 +51,7 @@ OutputOptions picture_options(const FileOptions& files, const OutputOptions& out
 }
 
 std::string output_for(const Input& input, const FileOptions& files) {
-    return files.output.empty() ? files.place(files.name, files.fields_of(input.name)) : files.output;
+    return files.output.empty() ? files.place(files.name, files.fields_of(input)) : files.output;
 }
 
 // Completes a task, and returns the files beside its model.

@@ -34,7 +34,7 @@ std::string default_pattern(const Input& input, const FileOptions& files, const 
         container = rules.batch;
     }
     std::string pattern = output.engines.size() > 1 ? "{engine}/" : "";
-    if (!files.root.empty()) pattern += "{dir}/";
+    if (!files.root.empty() || !input.folder.empty()) pattern += "{dir}/";
     const std::string suffix(output.engine != nullptr ? output.engine->suffix : "");
     if (input.model) {
         pattern += "{stem}_{material}" + suffix;
@@ -46,7 +46,14 @@ std::string default_pattern(const Input& input, const FileOptions& files, const 
 
 std::string output_name(const Input& input, const FileOptions& files, const OutputOptions& output,
                         const OutputRules& rules) {
-    NameFields fields = files.fields_of(input.name);
+    if (files.in_place) {
+        if (input.model || input.name == "-" || is_special_file(input.name))
+            throw UsageError("--in-place",
+                             printable(input.name) + (input.model ? " is a model, and -o names what it becomes"
+                                                                  : " is no file that can be replaced"));
+        return input.name;
+    }
+    NameFields fields = files.fields_of(input);
     if (input.model) {
         fields.material = input.model->map ? input.model->field : "0";  // without a map, nothing is written
         fields.ext = extension_of(Container::png);                      // the input's own is that of the model
@@ -202,7 +209,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
     check_engines(tasks, output.engines.size());
     if (rules.relate) rules.relate(tasks);
     if (!files.depfile.empty()) check_depfile_names(tasks);
-    check_collisions(tasks, files.depfile, files.lists(), rules.in_place && !files.output.empty());
+    check_collisions(tasks, files.depfile, files.lists(), rules.in_place && (files.in_place || !files.output.empty()));
     return tasks;
 }
 

@@ -25,6 +25,7 @@ constexpr ForeignOption kForeignOptions[] = {
     {"--out --outfile --dst", "--output"},
     {"--output-dir --outdir --output-folder --out-folder --dest", "--out-dir"},
     {"-i --input --infile", "inputs are named without an option"},
+    {"--inplace --overwrite -i", "--in-place"},
     {"-r -R --recursive --recurse", "--files-from, or a pattern such as 'art/**/*.png'"},
     {"-v", "--version, or --json for all that is known"},
     {"--verbose", "--json, which prints all that is known"},

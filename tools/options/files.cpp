@@ -62,7 +62,11 @@ void FileOptions::check(const Command& command) {
     if (!root.empty() && !name.empty() && !NamePattern(name).uses("dir"))
         throw UsageError("--root has no effect, because --name does not contain {dir}");
     check_inputs(command);
-    if (writes() && output.empty() && out_dir.empty() && name.empty())
+    const std::vector<std::string> of_outputs = {"--output", "--out-dir",    "--name",   "--root",
+                                                 "--update", "--no-clobber", "--depfile"};
+    if (const auto given = command.given_of(of_outputs); in_place && !given.empty())
+        throw UsageError("--in-place and " + given.front() + " contradict each other");
+    if (writes() && output.empty() && out_dir.empty() && name.empty() && !in_place)
         throw UsageError("no output: give -o FILE or --out-dir DIR");
     if (depfile == "-") throw UsageError("--depfile", "needs a file, not standard output");
     if (is_folder(output)) {
@@ -124,17 +128,13 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
             continue;
         }
         if (reads_folders && is_folder(input)) {
-            auto found = pictures_below(input);
-            if (!found) return found.error();
-            other_files += found->others;
-            const std::set<std::string> made = made_in ? made_in(input) : std::set<std::string>();
-            const auto is_made = [&](const std::string& file) {
-                return made.count(slashed(fs::path(file).lexically_normal())) > 0;
-            };
-            if (!std::all_of(found->files.begin(), found->files.end(), is_made))
-                made_files += static_cast<std::int64_t>(std::erase_if(found->files, is_made));
-            for (std::string& file : found->files) inputs.push_back({std::move(file)});
+            if (auto listed = list_folder(input, inputs); !listed) return listed.error();
             continue;
+        }
+        if (command.inputs().size() == 1 && is_folder(input)) {
+            return Error{
+                ErrorCode::io, input,
+                fmt::format("is a directory; name its files, such as '{}*.png'", slashed(fs::path(input) / ""))};
         }
         auto files = inputs_of(input);
         if (!files) return files.error();
@@ -153,11 +153,42 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
     return inputs;
 }
 
-NameFields FileOptions::fields_of(const std::string& input) const {
-    NameFields fields = name_fields(input);
-    if (root.empty() || input == "-") return fields;
-    const auto dir = path_below(root, fields.dir);
-    if (!dir) throw UsageError(fmt::format("{} is not in --root {}", printable(input), printable(root)));
+Result<void> FileOptions::list_folder(const std::string& folder, std::vector<Input>& inputs) const {
+    auto found = pictures_below(folder);
+    if (!found) return found.error();
+    other_files_ += found->others;
+    // What an earlier run wrote is no input of the next.
+    if (!out_dir.empty() && !path_below(out_dir, folder))
+        std::erase_if(found->files, [&](const std::string& file) { return path_below(out_dir, file).has_value(); });
+    const std::set<std::string> made = made_in ? made_in(folder) : std::set<std::string>();
+    const auto is_made = [&](const std::string& file) {
+        return made.count(slashed(fs::path(file).lexically_normal())) > 0;
+    };
+    if (!std::all_of(found->files.begin(), found->files.end(), is_made))
+        made_files_ += static_cast<std::int64_t>(std::erase_if(found->files, is_made));
+    for (std::string& file : found->files) {
+        inputs.push_back({std::move(file)});
+        inputs.back().folder = folder;
+    }
+    return {};
+}
+
+std::string FileOptions::left_out() const {
+    std::string text;
+    const auto add = [&](std::int64_t files, std::string_view what) {
+        if (files > 0) text += fmt::format("; {} {} left out, which {}", files, files == 1 ? "file" : "files", what);
+    };
+    add(other_files_, other_files_ == 1 ? "is no picture" : "are no pictures");
+    add(made_files_, "build-normals made");
+    return text;
+}
+
+NameFields FileOptions::fields_of(const Input& input) const {
+    NameFields fields = name_fields(input.name);
+    const std::string& above = root.empty() ? input.folder : root;
+    if (above.empty() || input.name == "-") return fields;
+    const auto dir = path_below(above, fields.dir);
+    if (!dir) throw UsageError(fmt::format("{} is not in --root {}", printable(input.name), printable(above)));
     fields.dir = *dir;
     return fields;
 }

@@ -29,11 +29,10 @@ struct FileOptions {
     bool update = false;
     bool no_clobber = false;
     bool no_sync = false;
+    bool in_place = false;       // each input is its own output
     bool reads_folders = false;  // folders among the inputs stand for the pictures in them
     // The pictures of a folder that are made from others in it, as paths; empty: none are.
     std::function<std::set<std::string>(const std::string& folder)> made_in = {};
-    // After list_inputs(): what was left out of such folders.
-    mutable std::int64_t other_files = 0, made_files = 0;
     bool tiles = false;  // inputs are tiles of terrains, see batch/grid.h
     // Whether the run writes nothing, so that no output need be named; empty: it writes.
     std::function<bool()> writes_nothing = {};
@@ -50,12 +49,15 @@ struct FileOptions {
     // is no input at all, unless allow_empty is set: a list that a script made wrongly must not pass for success.
     [[nodiscard]] Result<std::vector<Input>> list_inputs(const Command& command) const;
 
+    // After list_inputs(): the end of a sentence about what was left out of folders.
+    [[nodiscard]] std::string left_out() const;
+
     // The files that names of inputs were read from: those of --files-from and @FILE.
     [[nodiscard]] std::vector<NamedFile> lists() const;
 
-    // The fields of a name for this input. {dir} is relative to --root if that option is given. Throws UsageError if
-    // the input is not in that folder.
-    [[nodiscard]] NameFields fields_of(const std::string& input) const;
+    // The fields of a name for this input. {dir} is relative to --root, or else to the input's folder if there is one.
+    // Throws UsageError if the input is not in that folder.
+    [[nodiscard]] NameFields fields_of(const Input& input) const;
     // Whether folders are made for outputs without --out-dir.
     [[nodiscard]] bool names_folders() const {
         return !name.empty() && (NamePattern(name).uses("dir") || NamePattern(name).uses("engine"));
@@ -70,10 +72,12 @@ struct FileOptions {
 
 private:
     void add_list(Command& command);
+    [[nodiscard]] Result<void> list_folder(const std::string& folder, std::vector<Input>& inputs) const;
     void check(const Command& command);
     void check_inputs(const Command& command);
 
     std::vector<std::string> argument_files_;
+    mutable std::int64_t other_files_ = 0, made_files_ = 0;  // what was left out of folders
 };
 
 }  // namespace tex::cli

@@ -166,7 +166,7 @@ std::string RoughnessOptions::output_of(const Task& task) const {
 }
 
 RoughnessUse RoughnessOptions::use_of(const Task& task) const {
-    return task.engine == nullptr ? RoughnessUse::any : task.engine->roughness;
+    return task.engine == nullptr ? RoughnessUse::any : task.engine->roughness.use;
 }
 
 RoughnessParts RoughnessOptions::parts_for(const Task& task) const {
@@ -230,6 +230,12 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         const Container container = container_for(path);
         check_format(task, path, container);
         if (levels == 1 || can_hold_levels(container) || has_level(path)) continue;
+        if (task.engine != nullptr && !task.engine->roughness.importer.empty() && !is_in_place()) {
+            throw UsageError(
+                printable(path),
+                fmt::format("{} files hold one level, and the importer of {} makes those of roughness: {}",
+                            name_of(kContainerNames, container), task.engine->name, task.engine->roughness.importer));
+        }
         throw UsageError(
             printable(path),
             is_in_place() ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, which "

@@ -124,19 +124,28 @@ std::string FolderTally::text() const {
     std::string text = fmt::format("maps compared: {}, of which {} differ", maps_, different_);
     if (failed_ > 0) text += fmt::format("; files that failed: {}", failed_);
     if (different_ > 0) text += fmt::format("; largest mean: {:.4f} degrees, of {}", most_, printable(most_of_));
-    return text + "\n";
+    return text;
 }
 
-Result<void> CompareDocuments::write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
-                                          const Plane<float>& degrees) const {
+Result<void> CompareDocuments::add_pair(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
+                                        const Plane<float>& degrees) {
+    const std::string key = a.file;
     auto entry = compare_entry(levels, std::move(a), std::move(b), degrees, heat_map_scale_);
     if (!entry) return entry.error();
-    HtmlReport page("compare-normals", compare_columns());
-    page.add("", std::move(*entry));
+    page_.add(key, std::move(*entry));
     const AngularError& e = levels.front().error;
-    return write_document(
-        page_path_, page.page(fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees",
-                                          levels.front().number, e.mean, e.p999, e.max)));
+    figures_ = fmt::format("level {}: mean {:.4f}, 99.9th percentile {:.4f}, largest {:.4f} degrees",
+                           levels.front().number, e.mean, e.p999, e.max);
+    return {};
+}
+
+void CompareDocuments::add_failure(const std::string& name, const Error& error) {
+    if (has_page()) page_.add(name, failed_entry(name, error, compare_columns().size()));
+}
+
+Result<void> CompareDocuments::write_page(const std::string& summary) const {
+    if (!has_page()) return {};
+    return write_document(page_path_, page_.page(summary.empty() ? figures_ : summary));
 }
 
 Result<void> CompareDocuments::write_depfile(const std::vector<std::string>& inputs) const {

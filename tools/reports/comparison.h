@@ -53,7 +53,7 @@ class CompareDocuments {
 public:
     void add(Command& command);
 
-    [[nodiscard]] bool has_any() const { return !page_path_.empty() || !heat_map_path_.empty(); }
+    [[nodiscard]] bool has_heat_map() const { return !heat_map_path_.empty(); }
     [[nodiscard]] bool has_page() const { return !page_path_.empty(); }
 
     // Throws UsageError if a document cannot be written, is an input, or is another document.
@@ -62,9 +62,13 @@ public:
     // Writes the picture of the angles, if the user requests it.
     [[nodiscard]] Result<void> write_heat_map(const Comparison& comparison) const;
 
-    // Writes the page. `degrees` are the angles of the first level in `levels`.
-    [[nodiscard]] Result<void> write_page(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
-                                          const Plane<float>& degrees) const;
+    // Adds a pair of maps to the page. `degrees` are the angles of the first level in `levels`.
+    [[nodiscard]] Result<void> add_pair(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,
+                                        const Plane<float>& degrees);
+    void add_failure(const std::string& name, const Error& error);
+
+    // Writes the page, if the user requests it. `summary` is its first sentence; empty: the figures of its only pair.
+    [[nodiscard]] Result<void> write_page(const std::string& summary) const;
 
     // Writes what the documents were made from, if the user requests it.
     [[nodiscard]] Result<void> write_depfile(const std::vector<std::string>& inputs) const;
@@ -72,6 +76,8 @@ public:
 private:
     std::string heat_map_path_, page_path_, depfile_;  // or empty
     std::optional<double> heat_map_scale_;             // degrees; none: the largest angle
+    HtmlReport page_{"compare-normals", compare_columns()};
+    std::string figures_;  // of the last pair
 };
 
 }  // namespace tex::cli

@@ -208,11 +208,7 @@ std::string CheckTotals::text() const {
                                    count(by_severity[1], "warning"), count(by_severity[0], "note"));
     if (unreadable > 0) line += fmt::format("; {} unreadable", unreadable);
     if (known > 0) line += fmt::format("; {} known and accepted", known);
-    if (other_files > 0)
-        line += fmt::format("; {} left out, which {} no picture{}", count(static_cast<int>(other_files), "file"),
-                            other_files == 1 ? "is" : "are", other_files == 1 ? "" : "s");
-    if (made_files > 0)
-        line += fmt::format("; {} left out, which build-normals made", count(static_cast<int>(made_files), "file"));
+    line += left_out;
     if (!fails && by_severity[2] == 0 && by_severity[1] > 0) line += "; warnings pass, --fail-on warning refuses them";
     return line;
 }

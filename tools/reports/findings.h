@@ -45,9 +45,8 @@ namespace tex::cli {
 struct CheckTotals {
     int files = 0, unreadable = 0, known = 0;
     int by_severity[3] = {};
-    bool fails = false;  // a finding makes the command fail
-    // Files of folders that were left out: no pictures, and outputs of a build.
-    std::int64_t other_files = 0, made_files = 0;
+    bool fails = false;         // a finding makes the command fail
+    std::string left_out = {};  // FileOptions::left_out()
 
     // `its_known`: the number of findings that a baseline removed from the report. Files are counted by the caller.
     void add(const CheckReport& report, int its_known);

@@ -169,6 +169,16 @@ Result<HtmlEntry> check_entry(const CheckReport& report, const Requirements& req
     return entry;
 }
 
+HtmlEntry failed_entry(const std::string& name, const Error& error, std::size_t columns) {
+    HtmlEntry entry;
+    entry.title = printable(name);
+    entry.words = "error";
+    entry.row = fmt::format("<td><span class=\"chip error\">{}</span></td>", html_text(error.reason));
+    for (std::size_t k = 1; k < columns; ++k) entry.row += "<td></td>";
+    entry.body = fmt::format("<p><b>{}</b></p>\n", html_text(error.of(name).message()));
+    return entry;
+}
+
 std::vector<std::string> compare_columns() { return {"limits", "level", "mean", "p99.9", "largest, degrees"}; }
 
 Result<HtmlEntry> compare_entry(const std::vector<ComparedLevel>& levels, HtmlMap a, HtmlMap b,

@@ -77,6 +77,9 @@ private:
     std::size_t mesh_size_ = 0;                            // of all of them, in characters
 };
 
+// The entry of a file that failed, in a page with so many columns.
+[[nodiscard]] HtmlEntry failed_entry(const std::string& name, const Error& error, std::size_t columns);
+
 // The columns and an entry of check-normals. `map` is null for a file that could not be decoded.
 // `waived` are findings that a baseline accepts.
 [[nodiscard]] std::vector<std::string> check_columns();

@@ -145,13 +145,7 @@ Result<void> RepairReport::add(Job& job, const std::string& name, const Texture&
 }
 
 void RepairReport::add_failure(const Job& job, const Error& error) {
-    HtmlEntry entry;
-    entry.title = printable(job.task.name());
-    entry.words = "error";
-    entry.row = fmt::format("<td><span class=\"chip error\">{}</span></td><td></td><td></td><td></td>",
-                            html_text(error.reason));
-    entry.body = fmt::format("<p><b>{}</b></p>\n", html_text(error.of(job.task.input).message()));
-    page_.add(job.task.name(), std::move(entry));
+    page_.add(job.task.name(), failed_entry(job.task.name(), error.of(job.task.input), 4));
 }
 
 ExitCode RepairReport::write(Console& console, const std::string& summary) const {

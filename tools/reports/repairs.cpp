@@ -92,6 +92,11 @@ std::string_view manifest_words(const FaultLeft& fault) {
     return " (mirrored = \"green\" or \"red\" repairs it)";
 }
 
+std::string inversion_words(bool is_in_model) {
+    return std::string("blue alone was inverted back; if bumps look like dents now, the whole picture was inverted: ") +
+           (is_in_model ? "invert it in an image editor instead" : "scale-normals --scale -1 turns x and y, too");
+}
+
 Json repairs_json(const Repaired& repaired) {
     Json json;
     json["state"] = repaired.has_errors() ? "refused" : repaired.steps.empty() ? "whole" : "repaired";

@@ -19,6 +19,9 @@ namespace tex::cli {
 // What a manifest says to repair a fault that is left: " (likely = true repairs it)"; or nothing.
 [[nodiscard]] std::string_view manifest_words(const FaultLeft& fault);
 
+// The doubt that stays where N220 inverts blue back.
+[[nodiscard]] std::string inversion_words(bool is_in_model);
+
 // What --json prints of it, with notes, too.
 [[nodiscard]] Json repairs_json(const Repaired& repaired);
 

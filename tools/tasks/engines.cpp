@@ -66,13 +66,30 @@ constexpr Engine kEngines[] = {
      "up.",
      kUnityTypes, kUnityEncodings, RoughnessUse::smoothness},
     // Texture editor: Compression Settings, Normalmap (BC5), and Flip Green Channel for maps with green up.
-    {"unreal", png, rgb8, YAxis::down, false, "",
-     "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX.", kPictures, kRgb},
+    // Roughness: docs.unrealengine.com/4.26/en-US/RenderingAndGraphics/Textures/Composite.
+    {"unreal",
+     png,
+     rgb8,
+     YAxis::down,
+     false,
+     "",
+     "The importer compresses to BC5 and builds the levels. It expects green down, as in DirectX.",
+     kPictures,
+     kRgb,
+     {RoughnessUse::any, "set Composite Texture of the roughness texture to the normal map"}},
     // StandardMaterial3D, roughness_texture_channel: an ORM material reads green.
-    // docs.godotengine.org, Importing images: PNG has 8 bits after import; StandardMaterial3D: X+, Y+ and Z+.
-    {"godot", png, rgb8, YAxis::up, false, "",
+    // docs.godotengine.org, Importing images: Roughness > Src Normal; PNG has 8 bits after import; StandardMaterial3D:
+    // X+, Y+ and Z+.
+    {"godot",
+     png,
+     rgb8,
+     YAxis::up,
+     false,
+     "",
      "The importer compresses, builds the levels and keeps 8 bits of a PNG file. It expects green up, as in OpenGL.",
-     kGodotTypes, kGodotEncodings, RoughnessUse::green},
+     kGodotTypes,
+     kGodotEncodings,
+     {RoughnessUse::green, "set Roughness > Src Normal in its import settings to the normal map"}},
     // glTF 2.0 specification, 3.9.2: metalness is sampled from blue, roughness from green, occlusion from red.
     // glTF 2.0 specification, 3.8.3: images are PNG or JPEG; 3.9.3: normalTexture is RGB, +Y is up.
     {"gltf", png, rgb8, YAxis::up, false, "",

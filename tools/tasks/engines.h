@@ -23,6 +23,14 @@ enum class RoughnessUse {
 };
 
 // One row of the table.
+// Where an engine reads roughness, and what makes its importer derive the levels from a normal map; may be empty.
+struct EngineRoughness {
+    constexpr EngineRoughness(RoughnessUse use_ = RoughnessUse::any, std::string_view importer_ = {})
+        : use(use_), importer(importer_) {}
+    RoughnessUse use;
+    std::string_view importer;
+};
+
 struct Engine {
     std::string_view name;  // "unity"
     Container container;    // of names that the command makes, and of standard output
@@ -34,7 +42,7 @@ struct Engine {
     // What it reads besides, for check-normals.
     std::span<const Container> types;
     std::span<const Encoding> encodings;
-    RoughnessUse roughness = RoughnessUse::any;
+    EngineRoughness roughness = {};
     std::span<const Encoding> in_ktx2 = {};  // instead of encodings, in KTX2
     bool inflates_zlib = true;               // of KTX2
 };

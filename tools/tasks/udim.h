@@ -29,6 +29,7 @@ struct Input {
     std::string pattern = {};                      // the name with the mark, if there is a tile
     std::optional<TilePosition> place = {};        // of a tile of a terrain; `pattern` is then the name with its marks
     std::shared_ptr<const ModelInput> model = {};  // the input is this map of a model (model_input.h)
+    std::string folder = {};                       // of the command line, in which the file was found
 };
 
 [[nodiscard]] bool has_tile(std::string_view name);

@@ -63,6 +63,7 @@ bool check_surface_data(const CheckContext& context, Findings& findings) {
         return false;
     const double off = context.counts.share(Property::off_length), mean = context.counts.mean_x;
     if (off <= kColorShare || std::abs(mean) <= kFarMean) return false;
+    if (context.kind_measure.is_flat() && mean < 0.0) return false;  // no surface is that dark all over: stretched levels
     const double share = extreme_share(context.base.planes[2]);
     if (share < kExtremeShare) return false;
     add_share(findings, "N216",
