@@ -3,7 +3,6 @@
 #include <tex/repair.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -30,7 +29,6 @@ namespace {
 
 constexpr double kFirstCheck = 0.5;  // of the progress
 constexpr double kFarLean = 20.0;    // degrees that a map leans after z was rebuilt, so that x and y were changed, too
-constexpr double kClearer = 0.1;      // of the correlation of curl, once all green points one way
 constexpr int kMostStepsOfRow = 2;   // blue, green, red order takes one step, other orders two
 
 bool names(const std::vector<std::string>& list, const Rule& rule) {
@@ -302,11 +300,7 @@ private:
     // right turn, slopes follow the heights. Numbers read with the right sign do not lean, nor does a z that was lost.
     [[nodiscard]] bool contradicts(const RepairStep& step, const CheckReport& report) const {
         if (step.kind == RepairKind::change_sign) return find_finding(report, "N207") != nullptr;
-        if (step.kind == RepairKind::invert_part) {
-            // What was divided along another line than the one that divides it is as mixed as before.
-            const bool is_clearer = std::abs(report.y.correlation) > std::abs(report_.y.correlation) + kClearer;
-            return !is_clearer || find_finding(report, "N401") != nullptr;
-        }
+        if (step.kind == RepairKind::invert_part) return find_finding(report, "N401") != nullptr;
         // What moved x and y, as brightness does, cut z off: with z of x and y as they are, all would lean more.
         if (step.kind == RepairKind::rebuild_z && !options_.likely) {
             const Finding* const leaning = find_finding(report, "N207");

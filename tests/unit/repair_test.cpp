@@ -243,6 +243,25 @@ TEST(Repair, TurnsGreenOverInOneHalf) {
     }
 }
 
+// A half that was mirrored from left to right has its red inverted, and no line across which green is.
+TEST(Repair, LeavesAHalfThatWasMirrored) {
+    const Codes whole = clean();
+    Codes codes = whole;
+    const int half = codes.extent.width / 2;
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < half; ++i) {
+            for (int c = 0; c < 3; ++c) codes.at(i, j, c) = whole.at(half - 1 - i, j, c);
+        }
+    }
+    RepairOptions options;
+    options.likely = true;
+    options.only = {"N402"};
+    const Repaired done = repaired(reference::texture_of(codes), options);
+    EXPECT_FALSE(done.texture);
+    ASSERT_FALSE(done.left.empty());
+    EXPECT_EQ(done.left.front().finding.rule->id, "N402");
+}
+
 TEST(Repair, TwoDamagesGoInTheRightOrder) {
     const Texture plain = reference::texture_of(clean());
     const Texture turned = reference::texture_of(reference::srgb_encode(reference::flip_green(clean())));
