@@ -160,6 +160,7 @@ Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
     if (!pairs) return pairs.error();
     for (std::size_t k = 0; k < 2; ++k) {
         if (pairs->alone[k].empty()) continue;
+        tally_.add_alone(pairs->alone[k].size());
         pair_.warn(console, names[k],
                    fmt::format("not compared, because {} has no file of that name: {}", names[1 - k],
                                cli::join(pairs->alone[k])));

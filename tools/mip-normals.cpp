@@ -80,9 +80,17 @@ Result<void> MipNormals::check(const std::vector<cli::Task>& tasks) {
     roughness_.check(tasks, mips_.levels.value_or(0));
     for (const cli::Task& task : tasks) {
         if (mips_.levels || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
+        const std::string_view type = name_of(kContainerNames, task.container);
+        if (task.engine != nullptr && !task.engine->has_mips)
+            throw cli::UsageError(
+                cli::printable(task.output),
+                fmt::format("{} files hold one level, and {} builds the others: pack-normals --for {} makes such a "
+                            "file; .dds, .ktx2 and .exr hold all",
+                            type, task.engine->name, task.engine->name));
         throw cli::UsageError(
-            fmt::format("{}: {} files hold one level; give .dds, .ktx2 or .exr, or --name with {{level}}",
-                        cli::printable(task.output), name_of(kContainerNames, task.container)));
+            fmt::format("{}: {} files hold one level; give .dds, .ktx2 or .exr, or --name with "
+                        "{{level}}",
+                        cli::printable(task.output), type));
     }
     return {};
 }

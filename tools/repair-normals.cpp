@@ -19,7 +19,7 @@
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "cli/value.h"
-#include "options/normals.h"
+#include "options/repairing.h"
 #include "reports/repair_report.h"
 #include "reports/repairs.h"
 #include "tasks/folders.h"
@@ -55,17 +55,17 @@ private:
     [[nodiscard]] cli::OutputRules rules() const override {
         cli::OutputRules rules;
         rules.in_place = true;
-        rules.models = material_;
+        rules.models = repairing_.material();
         rules.writes_models = true;
         rules.keeps_maps = true;
-        if (!height_file_.empty()) rules.amend = [this](cli::Task& task) { task.own.push_back(height_file_); };
+        if (!repairing_.height_file().empty())
+            rules.amend = [this](cli::Task& task) { task.own.push_back(repairing_.height_file()); };
         return rules;
     }
     [[nodiscard]] Result<void> check(const std::vector<cli::Task>& tasks) override;
     [[nodiscard]] Result<void> process(cli::Job& job) override;
     [[nodiscard]] Result<void> process_file(cli::Job& job, cli::RepairTotals& totals);
     [[nodiscard]] Result<void> process_model(cli::Job& job, const cli::ModelOutput& model, cli::RepairTotals& totals);
-    [[nodiscard]] RepairOptions options_for(std::optional<YAxis> y) const;
     void report(cli::Job& job, const std::string& name, const Repaired& repaired, cli::RepairTotals& totals) const;
     [[nodiscard]] Result<Repaired> repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
                                                    const Texture& texture, const Execution& execution) const;
@@ -81,12 +81,9 @@ private:
     // The options that say how outputs are stored. Without them, files keep their format.
     [[nodiscard]] bool stores_otherwise() const { return !command.given_of(kStorage).empty(); }
 
-    std::string material_, height_file_;
-    std::optional<HeightField> height_;
-    RepairOptions options_;
+    cli::RepairingOptions repairing_;
     bool dry_run_ = false;
     bool is_step_ = true;  // of a manifest
-    std::optional<cli::LengthIn> length_in_;
     std::mutex mutex_;
     cli::RepairTotals totals_;
     cli::RepairReport report_;
@@ -109,45 +106,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
     command.flag(dry_run_, "--dry-run", "print what would be done, and write nothing")
         .often(5, "print what would be done, and write nothing");
     report_.add(command);
-    command.group("Repairs");
-    command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
-    const auto rules_into = [](std::vector<std::string>& names) {
-        return [&names](const std::string& text) {
-            for (const std::string& name : cli::split(text, ',')) {
-                if (find_rule(name) == nullptr)
-                    throw cli::UsageError(fmt::format("there is no rule '{}'", cli::printable(name)));
-                names.push_back(name);
-            }
-        };
-    };
-    command.flag(options_.likely, "--likely", "also undo faults that the texels do not prove beyond doubt")
-        .often(3, "also undo faults that the texels do not prove");
-    command
-        .option("--only", "ID[,ID...]", "repair the faults of these rules alone (ids or names)",
-                rules_into(options_.only))
-        .repeatable = true;
-    command.option("--skip", "ID[,ID...]", "leave the faults of these rules as they are", rules_into(options_.skip))
-        .repeatable = true;
-    command
-        .text(height_file_, "--height", "FILE",
-              "the height map that the (single) input was made from, which decides whether green or red is mirrored")
-        .completes = cli::Completes::files;
-    command.choice(options_.mirrored, "--mirrored", "CHANNEL", kMirroredChannelNames,
-                   "which channel is the other way round, where slopes show that green or red is");
-    command.choice(options_.turned, "--turned", "WAY", kTurnedPictureNames,
-                   "which way a picture was turned whose vectors were not");
-    command.option("--bumpiness", "B", "bake heights that stand in place of normals; white is B texel widths high",
-                   [this](const std::string& text) {
-                       options_.bumpiness = static_cast<float>(
-                           cli::parse_double(text, {.least = 1e-20, .greatest = 1e20, .of_magnitude = true}));
-                   });
-    cli::Option& layout =
-        command.option("--swizzle", "S", "which channels hold what: a word, or the channels of x, y and z, such as abg",
-                       [this](const std::string& text) { options_.checks.swizzle = cli::parse_swizzle(text); });
-    layout.words = cli::swizzle_words();
-    layout.preset = "auto";
-    layout.completes = cli::Completes::words;
-    cli::add_length_in(command, length_in_);
+    repairing_.add(command);
     output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
     running.add(command);
     command.check([this] {
@@ -164,31 +123,17 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
 
 Result<void> RepairNormals::check(const std::vector<cli::Task>& tasks) {
     const bool has_models = std::ranges::any_of(tasks, [](const cli::Task& task) { return is_model(task.input); });
-    if (!material_.empty() && !has_models) throw cli::UsageError("--material needs a model");
+    if (!repairing_.material().empty() && !has_models) throw cli::UsageError("--material needs a model");
     const bool writes_models =
         std::ranges::any_of(tasks, [](const auto& task) { return task.model_output != nullptr; });
     for (const std::string& option : command.given_of({"--update", "--depfile"})) {
         // Which files are beside a model depends on which of its maps change.
         if (writes_models) throw cli::UsageError(fmt::format("{} is not for models that are written", option));
     }
-    report_.check(tasks, {{"--height", height_file_}, {"--depfile", files.depfile}});
-    if (height_file_.empty()) return {};
+    report_.check(tasks, {{"--height", repairing_.height_file()}, {"--depfile", files.depfile}});
+    if (repairing_.height_file().empty()) return {};
     if (tasks.size() != 1 || has_models) throw cli::UsageError("--height goes with a single file, which is no model");
-    const auto image = read_image(height_file_, running.read);
-    if (!image) return image.error();
-    auto field = height_field(*image, {});
-    if (!field) return field.error().of(height_file_);
-    height_ = std::move(*field);
-    options_.checks.height = &*height_;
-    return {};
-}
-
-RepairOptions RepairNormals::options_for(std::optional<YAxis> y) const {
-    RepairOptions options = options_;
-    options.effort = output.effort;
-    options.checks.require.y = y;
-    options.checks.any_length = length_in_.has_value();
-    return options;
+    return repairing_.read_heights(running.read);
 }
 
 void RepairNormals::report(cli::Job& job, const std::string& name, const Repaired& repaired,
@@ -205,6 +150,15 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
         const bool is_in_model = job.task.model != nullptr;
         if (step.rule->id == "N220") job.warn(cli::inversion_words(is_in_model), is_in_model ? "" : name);
     }
+    const bool is_about_y =
+        std::ranges::any_of(repaired.steps, [](const auto& step) { return is_about_green(*step.rule); });
+    if (repairing_.names_mirrored() && !is_about_y && !repaired.after.y.y &&
+        repaired.after.kind == PictureKind::normals) {
+        job.warn(
+            "which way green points does not show in it, so that --mirrored turns nothing over; pack-normals with "
+            "--y-in and --y does",
+            name);
+    }
     if (!writes_to_output()) job.say(cli::repairs_text(name, repaired));
 }
 
@@ -220,7 +174,7 @@ Result<void> RepairNormals::process(cli::Job& job) {
 Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& totals) {
     if (job.task.model_output) return process_model(job, *job.task.model_output, totals);
     if (dry_run_ && is_model(job.task.input)) {
-        const auto model = cli::maps_to_write(job.task.input, material_, {job.read_options});
+        const auto model = cli::maps_to_write(job.task.input, repairing_.material(), {job.read_options});
         return model ? process_model(job, *model, totals) : model.error();
     }
     // Read once, so that what is copied is what was checked.
@@ -237,10 +191,17 @@ Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& total
     if (!texture) return texture.error();
     if (!job.reached(0.2)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     const Execution execution = job.until(dry_run_ ? 1.0 : 0.7);
-    auto repaired = job.task.model ? repair_in_model(job, {job.task.model}, *texture, execution)
-                                   : repair(job.task.input, *texture, options_for(output.y), execution);
+    auto repaired = job.task.model
+                        ? repair_in_model(job, {job.task.model}, *texture, execution)
+                        : repair(job.task.input, *texture, repairing_.options(output.y, output.effort), execution);
     if (!repaired) return repaired.error();
     job.report.update(cli::repairs_json(*repaired));
+    if (job.task.in_folder && !repairing_.bakes() && cli::holds_no_normals(*repaired)) {
+        totals.leave_out();
+        job.report["state"] = "left-out";
+        job.say(cli::left_out_text(job.task.name(), *repaired));
+        return {};
+    }
     report(job, job.task.name(), *repaired, totals);
     if (report_.is_given()) {
         const auto y = job.task.model ? output.y.value_or(YAxis::up) : output.y;
@@ -257,7 +218,7 @@ Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& total
 // glTF demands green up: a warning, as in check_map(), unless --y is given. What the model's tangents cancel is left.
 Result<Repaired> RepairNormals::repair_in_model(cli::Job& job, const std::vector<MapOfModel>& maps,
                                                 const Texture& texture, const Execution& execution) const {
-    RepairOptions options = options_for(output.y.value_or(YAxis::up));
+    RepairOptions options = repairing_.options(output.y.value_or(YAxis::up), output.effort);
     if (!output.y) options.checks.severity.push_back({"N401", Severity::warning});
     auto repaired = repair(maps.front()->name(), texture, options, execution);
     using std::ranges::any_of;
@@ -316,6 +277,9 @@ Result<void> RepairNormals::process_model(cli::Job& job, const cli::ModelOutput&
         for (const MapOfModel& map : maps) picture.maps.push_back(*map->map);
         picture.bytes = std::move(*bytes);
     }
+    if (is_refused)
+        job.warn(
+            "no map of it is written, because an error is left in one; --skip with that rule leaves that map as it is");
     if (is_refused || dry_run_) return {};
     if (!job.reached(0.95)) return Error{ErrorCode::cancelled, {}, "cancelled"};
     return cli::write_model_output(job, changes);
@@ -390,7 +354,7 @@ Result<void> RepairNormals::pack(cli::Job& job, const Texture& texture, Bytes by
 cli::ExitCode RepairNormals::finish(cli::Console& console) {
     const std::string summary = totals_.text(dry_run_) + files.left_out();
     const cli::ExitCode code = report_.write(console, summary);
-    if (is_step_ || running.json || writes_to_output() || totals_.maps == 0) return code;
+    if (is_step_ || running.json || writes_to_output() || totals_.maps + totals_.left_out == 0) return code;
     return std::max(code, console.print(summary + "\n"));
 }
 

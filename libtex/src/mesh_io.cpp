@@ -80,7 +80,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
         if (!bytes) return bytes.error();
         const LoadBeside load = [&](const std::string& name) -> Result<std::vector<std::byte>> {
             if (path == "-") return Error{ErrorCode::unsupported, path, "has buffers in other files: " + name};
-            return read_beside(path, name, options.max_bytes);
+            return read_named(path, name, options.max_bytes);
         };
         auto mesh = parse(path, *bytes, load, options);
         if (!mesh) return mesh.error().of(path);

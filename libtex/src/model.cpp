@@ -28,7 +28,7 @@ enum class Geometry { read, left_out };
 
 Result<Model> parse_model(const std::string& path, std::span<const std::byte> bytes, const MeshReadOptions& options,
                           Geometry geometry) {
-    const LoadBeside load = [&](const std::string& name) { return read_beside(path, name, options.max_bytes); };
+    const LoadBeside load = [&](const std::string& name) { return read_named(path, name, options.max_bytes); };
     const DecodeDraco draco = [&](std::span<const std::byte> request) {
         return decode_draco_with_reader(path, request, options.reader);
     };

@@ -87,7 +87,7 @@ Result<Prepared> prepare(const std::string& input, const std::string& output, co
     if (!is_gltf(*bytes)) return Error{ErrorCode::unsupported, input, "is not a glTF model"};
     const auto is_binary = is_binary_name(output);
     if (!is_binary) return is_binary.error();
-    const LoadBeside load = [&](const std::string& name) { return read_beside(input, name, options.max_bytes); };
+    const LoadBeside load = [&](const std::string& name) { return read_named(input, name, options.max_bytes); };
     ModelPlace place;
     std::error_code error;
     place.is_same_folder = fs::equivalent(folder_of(input), folder_of(output), error);

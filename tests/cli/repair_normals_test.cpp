@@ -184,16 +184,17 @@ TEST_F(RepairNormals, AnInputIsItsOwnOutputOnlyIfItIsNamed) {
 TEST_F(RepairNormals, FoldersKeepTheirTreeOrAreRepairedInPlace) {
     const Ran made = shell(scratch_,
                            "mkdir -p art/deep art/.git && cp light.png bgr.png art && cp bgr.png art/deep && "
-                           "cp bgr.png art/.git && cp clean.png art && echo text > art/notes.txt");
+                           "cp bgr.png art/.git && cp clean.png waves.png art && echo text > art/notes.txt");
     ASSERT_EQ(made.code, 0) << made.err;
     for (const char* out_dir : {"mended", "art/mended", "art/mended"}) {
         const Ran ran = go({"art", "--out-dir", out_dir});
         EXPECT_EQ(ran.code, 0) << ran.err;
-        EXPECT_NE(ran.out.find("4 maps: 3 repaired, 1 without a fault to repair; 1 file left out, which is no "
-                               "picture\n"),
+        EXPECT_NE(ran.out.find("4 maps: 3 repaired, 1 without a fault to repair; 1 picture left out, which holds "
+                               "no normals; 1 file left out, which is no picture\n"),
                   std::string::npos)
             << ran.out;
         EXPECT_EQ(bytes_of(std::string(out_dir) + "/deep/bgr.png"), clean_);
+        EXPECT_FALSE(scratch_.has(std::string(out_dir) + "/waves.png"));
     }
     std::filesystem::remove_all(scratch_.path("art/mended"));
     const auto written = std::filesystem::last_write_time(scratch_.path("art/clean.png"));

@@ -347,6 +347,8 @@ TEST_F(RoughnessOut, MisuseIsRefused) {
     refuses({"--roughness-out", "-"}, 2, "needs a file, not standard output");
     refuses({"--roughness-out", "r.foo"}, 2, "r.foo: unsupported output format");
     refuses({"--roughness-out", "r.png"}, 2, "r.png: png files hold one level");
+    refuses({"--roughness-out", "r.png", "--for", "unreal"}, 2,
+            "png files hold one level, and the importer of unreal makes those of roughness: set Composite Texture");
     refuses({"--roughness-out", "r_{level}.png", "--roughness-format", "bc4"}, 2, "cannot hold roughness as bc4");
     refuses({"--roughness-out", "r.dds", "--roughness-format", "eac-r11"}, 2, "cannot hold roughness as eac-r11");
     refuses({"--roughness-out", "r_{stm}.png"}, 2, "did you mean stem?");

@@ -205,7 +205,7 @@ TEST_F(Models, FilesThatAreNoneAreNotOpened) {
     const auto mesh = read_mesh(path("b.gltf"));
     ASSERT_FALSE(mesh);
     EXPECT_EQ(mesh.error().code, ErrorCode::io);
-    EXPECT_EQ(mesh.error().reason, "is not a regular file");
+    EXPECT_EQ(mesh.error().reason, "is not a regular file, which b.gltf names");
 }
 
 // What is wrong with one image is that image's error; the model is read.

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -153,6 +155,51 @@ TEST(Repair, LevelGroundIsLevelAgainAfterFewValues) {
     }
     EXPECT_LT(std::abs(lean), 0.01) << "a step is 0.13";
     EXPECT_LT(angle(*done.texture, plain), 0.6 * angle(reference::texture_of(codes), plain));
+}
+
+// The curve makes one colour of a flat map, too, whose length as a vector is not far from 1.
+TEST(RepairTone, AFlatMapThatWentThroughTheCurveIsFlatAgain) {
+    Codes codes{{64, 64}, 3, std::vector<unsigned char>(std::size_t{3} * 64 * 64, 255)};
+    for (std::size_t k = 0; k < codes.values.size(); ++k) codes.values[k] = k % 3 == 2 ? 255 : 188;
+    RepairOptions options;
+    options.likely = true;
+    const Repaired done = repaired(reference::texture_of(codes), options);
+    EXPECT_EQ(plan_of(done), "N302 decode with the sRGB curve");
+    ASSERT_TRUE(done.texture);
+    EXPECT_EQ(codes_in(*done.texture).front(), 128);
+}
+
+// Contrast pushes many vectors of a rough map beyond the unit circle, which is no reason to call it a picture.
+TEST(RepairTone, AContrastMakesNoPictureOfAMap) {
+    Codes codes = reference::codes_of(bumps(24.0f));
+    for (unsigned char& code : codes.values) code = code_of(0.5 + 2.0 * (code / 255.0 - 0.5));
+    const auto report = check("map.png", reference::texture_of(codes));
+    ASSERT_TRUE(report);
+    bool is_long = false;
+    for (const Finding& finding : report->findings) {
+        EXPECT_NE(finding.rule->id, "N214") << finding.message;
+        is_long = is_long || (finding.rule->id == "N201" && finding.severity == Severity::warning);
+    }
+    EXPECT_TRUE(is_long);
+}
+
+// A strong JPEG leaves one value in each block of a nearly flat map. In other files, such squares are enlarged texels.
+TEST(RepairTone, BlocksOfJpegAreNoEnlargement) {
+    Codes codes = clean();
+    codes.extent = {codes.extent.width / 8 * 8, codes.extent.height / 8 * 8};
+    codes.values.resize(static_cast<std::size_t>(3 * codes.extent.texels()));
+    for (int j = 0; j < codes.extent.height; ++j) {
+        for (int i = 0; i < codes.extent.width; ++i) {
+            for (int c = 0; c < 3; ++c) codes.at(i, j, c) = clean().at(i / 8 * 8, j / 8 * 8, c);
+        }
+    }
+    for (const std::string name : {"map.jpg", "map.png"}) {
+        const auto report = check(name, reference::texture_of(codes));
+        ASSERT_TRUE(report);
+        const bool is_enlarged =
+            std::ranges::any_of(report->findings, [](const Finding& f) { return f.rule->id == "N312"; });
+        EXPECT_EQ(is_enlarged, name == "map.png");
+    }
 }
 
 }  // namespace tex::repaired_maps

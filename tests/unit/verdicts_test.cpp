@@ -303,8 +303,7 @@ TEST(Verdicts, ColorsOfHighRangeAreNoNormalMap) {
             values.insert(values.end(), {1.2f * bright, bright, 0.7f * bright});
         }
     }
-    Level level;
-    level.extent = {64, 64};
+    Level level{{64, 64}, {}};
     level.bytes.resize(values.size() * sizeof(float));
     std::memcpy(level.bytes.data(), values.data(), level.bytes.size());
     texture.levels.push_back(std::move(level));
@@ -313,12 +312,14 @@ TEST(Verdicts, ColorsOfHighRangeAreNoNormalMap) {
     EXPECT_EQ(ids_of(*report, Severity::warning), Ids{"N214"});
 }
 
-// Roughness between occlusion and metalness of 1 is no y beside a lost x.
+// Roughness between occlusion and metalness of 1 is no y beside a lost x; a flat map with stretched levels is no ORM.
 TEST(Verdicts, RoughnessBetweenOnesIsNoNormalMap) {
-    const Codes codes = picture(128, 3, [](int i, int j) {
-        return std::array<int, 4>{255, 152 + (shade(i, j) - 128) / 3, 255, 255};
-    });
-    EXPECT_EQ(ids(codes), Ids{"N216"});
+    const auto ids_with = [](int red, int green, int parts) {
+        const auto color = [=](int i, int j) { return std::array{red, green + (shade(i, j) - 128) / parts, 255, 255}; };
+        return ids(picture(128, 3, color));
+    };
+    EXPECT_EQ(ids_with(255, 152, 3), Ids{"N216"});
+    EXPECT_EQ(ids_with(16, 16, 64), Ids{"N214"});
 }
 
 // One colour beside white, as of a logo. The edges between them look like slopes.

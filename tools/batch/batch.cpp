@@ -189,6 +189,7 @@ Result<std::vector<Task>> Batch::plan() const {
     for (const Input& input : *inputs) {
         tasks.push_back({input.name, ""});
         tasks.back().tile = input.tile;
+        tasks.back().in_folder = !input.folder.empty();
         tasks.back().pattern = input.pattern;
     }
     return tasks;

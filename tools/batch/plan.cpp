@@ -197,6 +197,7 @@ std::vector<Task> plan_outputs(std::vector<Input> inputs, const FileOptions& fil
                 files.output.empty() ? output_name(input, files, own, rules) : output_of(files.output, input);
             Task planned{input.name, name};
             planned.tile = input.tile;
+            planned.in_folder = !input.folder.empty();
             planned.pattern = input.pattern;
             planned.model = input.model;
             Task task = complete(std::move(planned), own, rules);

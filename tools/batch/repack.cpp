@@ -89,8 +89,10 @@ Result<void> PackCommand::process(Job& job) {
             "y comes first, as in ATI2 of old, and x in the output, as in BC5; an engine that expects y first "
             "would exchange them");
     // Nobody chose the encoding, and texels could have stayed in that of the input.
-    if (!output.of(job.task.engine).format && format_info(packed->source.format).has_blocks() &&
-        now == default_encoding(job.task.container) && before != now) {
+    const auto from = container_of(input);
+    const bool is_from_texture = format_info(packed->source.format).has_blocks() || (from && can_hold_blocks(*from));
+    if (!output.of(job.task.engine).format && is_from_texture && now == default_encoding(job.task.container) &&
+        before != now) {
         repeated_.add(job, job.task.input,
                       fmt::format("{} becomes {}, the default; --format {} keeps it", name_of(kEncodingNames, before),
                                   name_of(kEncodingNames, now), name_of(kEncodingNames, before)));

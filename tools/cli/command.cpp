@@ -65,7 +65,8 @@ Command::Command(std::string_view name, std::string_view summary) : name_(name),
     // These rows come first because values are taken in the order of the rows. So --help works even if another option
     // is wrong.
     group(kHelpGroup);
-    flag(help_, "-h,--help", "print all options and exit, or one screen with -h; with --json, as data");
+    flag(help_, "-h,--help",
+         "print all options (-h: one screen with the most used ones) and exit; with --json, as data");
     flag(version_, "--version", "print the version and exit; with --json also how the program was built");
     choice_row("--completion", "SHELL", "print a completion script and exit", {{"bash", ""}, {"zsh", ""}, {"fish", ""}},
                [this](const std::string& shell) { completion_ = shell; })

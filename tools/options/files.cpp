@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/file_status.h"
 #include "cli/text.h"
 #include "cli/text_file.h"
 #include "cli/usage_error.h"
@@ -127,6 +128,7 @@ Result<std::vector<Input>> FileOptions::list_inputs(const Command& command) cons
             for (std::string& file : *files) inputs.push_back({std::move(file)});
             continue;
         }
+        if (input.ends_with('/') && !status_of(input)) return Error{ErrorCode::io, input, "no such file or directory"};
         if (reads_folders && is_folder(input)) {
             if (auto listed = list_folder(input, inputs); !listed) return listed.error();
             continue;

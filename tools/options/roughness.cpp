@@ -303,7 +303,7 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
                         name_of(kRoughnessFormatNames, packed.roughness_format)),
             shown);
     }
-    if (is_known && packed.levels == 1) {
+    if (is_known && packed.levels == 1 && packed.left_out == 0) {
         job.warn("one level loses no variance, so its roughness is the material's own, unchanged", shown);
     }
     Json map;

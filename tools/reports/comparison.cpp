@@ -123,6 +123,7 @@ Result<void> CompareDocuments::write_heat_map(const Comparison& comparison) cons
 std::string FolderTally::text() const {
     std::string text = fmt::format("maps compared: {}, of which {} differ", maps_, different_);
     if (failed_ > 0) text += fmt::format("; files that failed: {}", failed_);
+    if (alone_ > 0) text += fmt::format("; files without a partner: {}", alone_);
     if (different_ > 0) text += fmt::format("; largest mean: {:.4f} degrees, of {}", most_, printable(most_of_));
     return text;
 }

@@ -37,10 +37,12 @@ public:
         most_of_ = name;
     }
     void add_failure() { ++failed_; }
+    void add_alone(std::size_t files) { alone_ += files; }  // which have no partner
     [[nodiscard]] std::string text() const;
 
 private:
     int maps_ = 0, different_ = 0, failed_ = 0;
+    std::size_t alone_ = 0;
     double most_ = 0.0;  // the largest mean angle, in degrees
     std::string most_of_;
 };

@@ -105,7 +105,7 @@ std::string seams_text(const CheckReport& report) {
     const SeamEvidence& seams = *report.seams;
     return fmt::format(
         "{}: seams: {}: {} edges of the mesh, mean {:.2f} degrees, where a map of this detail that was baked for its "
-        "mesh and decoder has less than {:.1f}; p99 {:.2f}, worst edge {:.2f}\n",
+        "mesh and decoder has less than {:.1f}; p99 {:.2f}, {:.2f} in the mean of the worst edge\n",
         later_title(report), seams.mean < seams.usual ? "fine" : "visible", seams.edges, seams.mean, seams.usual,
         seams.p99, seams.worst);
 }

@@ -97,6 +97,17 @@ std::string inversion_words(bool is_in_model) {
            (is_in_model ? "invert it in an image editor instead" : "scale-normals --scale -1 turns x and y, too");
 }
 
+bool holds_no_normals(const Repaired& repaired) {
+    const PictureKind kind = repaired.after.kind;
+    return repaired.has_errors() && kind != PictureKind::normals && kind != PictureKind::object_space &&
+           kind != PictureKind::unknown;
+}
+
+std::string left_out_text(const std::string& name, const Repaired& repaired) {
+    return fmt::format("{}: left out: it holds no normals ({})\n", printable(name),
+                       name_of(kPictureKindNames, repaired.after.kind));
+}
+
 Json repairs_json(const Repaired& repaired) {
     Json json;
     json["state"] = repaired.has_errors() ? "refused" : repaired.steps.empty() ? "whole" : "repaired";
@@ -118,8 +129,9 @@ void RepairTotals::add(const Repaired& of) {
 }
 
 void RepairTotals::add(const RepairTotals& of) {
-    for (int RepairTotals::*const count : {&RepairTotals::maps, &RepairTotals::repaired, &RepairTotals::refused,
-                                           &RepairTotals::kept, &RepairTotals::whole, &RepairTotals::likely})
+    for (int RepairTotals::*const count :
+         {&RepairTotals::maps, &RepairTotals::repaired, &RepairTotals::refused, &RepairTotals::kept,
+          &RepairTotals::whole, &RepairTotals::likely, &RepairTotals::left_out})
         this->*count += of.*count;
 }
 
@@ -132,6 +144,9 @@ std::string RepairTotals::text(bool is_dry_run) const {
     if (refused > 0)
         text +=
             fmt::format(", {} {}not written, because an error would be left", refused, is_dry_run ? "would be " : "");
+    if (left_out > 0)
+        text += fmt::format("; {} {} left out, which {} no normals", left_out, left_out == 1 ? "picture" : "pictures",
+                            left_out == 1 ? "holds" : "hold");
     return text;
 }
 

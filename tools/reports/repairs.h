@@ -22,6 +22,11 @@ namespace tex::cli {
 // The doubt that stays where N220 inverts blue back.
 [[nodiscard]] std::string inversion_words(bool is_in_model);
 
+// Whether the picture is none of normals, and no repair makes it one.
+[[nodiscard]] bool holds_no_normals(const Repaired& repaired);
+// The line for such a picture of a folder, which nobody has named.
+[[nodiscard]] std::string left_out_text(const std::string& name, const Repaired& repaired);
+
 // What --json prints of it, with notes, too.
 [[nodiscard]] Json repairs_json(const Repaired& repaired);
 
@@ -29,9 +34,11 @@ namespace tex::cli {
 struct RepairTotals {
     int maps = 0, repaired = 0, refused = 0, kept = 0, whole = 0;  // kept: with faults that stay
     int likely = 0;                                                // of those that are repaired: by a likely step
+    int left_out = 0;                                              // of folders: pictures that hold no normals
 
     void add(const Repaired& of);
     void add(const RepairTotals& of);
+    void leave_out() { ++left_out; }
     [[nodiscard]] std::string text(bool is_dry_run) const;
 };
 

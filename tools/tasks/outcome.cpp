@@ -25,8 +25,9 @@ void Reporter::report_waiting() {
 
 void Reporter::report(const Outcome& outcome) {
     for (const FileWarning& warning : outcome.warnings) {
-        const bool names_input = !outcome.is_joint && warning.file != outcome.name;
-        const std::string prefix = names_input ? outcome.name + ": " : "";
+        const bool has_input = outcome.is_joint || warning.file == outcome.name ||
+                               warning.file.starts_with(outcome.name + ": ");  // a map of the model
+        const std::string prefix = has_input ? "" : outcome.name + ": ";
         console_.warning(fmt::format("{}{}: {}", prefix, warning.file, warning.message));
     }
     if (outcome.error) {

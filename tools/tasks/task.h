@@ -40,6 +40,7 @@ struct Task {
     std::shared_ptr<const FurtherPlaces> further = {};  // null: FileOptions::place() decides
     const Engine* engine = nullptr;                     // what the output is for, if --for says it
     int tile = 0;                                       // the UDIM tile (udim.h), or 0
+    bool in_folder = false;                             // the input was found in a folder of the command line
     std::string pattern = {};                           // the input's name with the mark, if that says the tile
     std::optional<TilePosition> place = {};             // of the input, if it is a tile of a terrain (grid.h)
     // The tiles around it, row by row, with an empty name for its own and for those that do not exist.

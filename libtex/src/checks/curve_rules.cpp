@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "checks/auto_levels.h"
@@ -168,12 +169,17 @@ bool check_tone(const CheckContext& context, const Centre& centre, Findings& fin
     return true;
 }
 
+double power_of_middle() { return math::pow(0.5, 1.0 / kPlainPower); }
+
 // Whether a plain power of 2.2, which image editors call gamma 2.2, made the map light, and not the curve of sRGB,
-// which is close to it: the middle lies two codes lower, and vectors are nearer to unit length without it.
+// which is close to it: the middle lies two codes lower, and the histogram shows it, or vectors are nearer to unit
+// length without it.
 bool is_plain_power(const CheckContext& context, const Centre& centre) {
-    const double by_power = centre.distance(math::pow(0.5, 1.0 / kPlainPower)),
-                 by_srgb = centre.distance(srgb_encoded(0.5));
+    const double by_power = centre.distance(power_of_middle()), by_srgb = centre.distance(srgb_encoded(0.5));
     if (by_power >= by_srgb || !context.stored.has_z()) return false;
+    const CodeComb comb(context.stored, context.background ? &*context.background : nullptr);
+    const CombFit power = comb.fit({0.0, 1.0, kPlainPower}), srgb = comb.fit_srgb(true);
+    if (power.is_proof() && std::pair(power.gaps, power.score) > std::pair(srgb.gaps, srgb.score)) return true;
     const auto clamped = [](double c) { return std::clamp(c, 0.0, 1.0); };
     constexpr double kLead = 0.95;  // of 40 maps that went through the curve of sRGB, the least is 0.98
     const double with_power =
@@ -239,14 +245,17 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
         if (other.is_known && check_tone(context, centre, findings)) return;
         is_sure = !other.is_likely;
     }
+    const bool is_power = light && is_plain_power(context, centre);
+    // Where neither z nor the histogram tells them apart, the middle may speak for the power.
+    if (light && !is_power && centre.distance(power_of_middle()) < centre.distance(srgb_encoded(0.5))) is_sure = false;
     Finding& finding =
         findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
                                                  decimal(255.0 * centre.y, 0) + " of 255 instead of 128");
     finding.figure = (centre.x + centre.y) / 2.0;
     finding.unit = "of full scale";
     finding.confidence = is_sure ? 0.99 : 0.9;
-    if (!is_sure) finding.message += "; z does not confirm the curve";
-    if (light && is_plain_power(context, centre)) {
+    if (!is_sure) finding.message += "; z does not confirm the curve: other levels may have made it so";
+    if (is_power) {
         finding.message += "; gamma " + decimal(kPlainPower, 1) + " fits better than the curve of sRGB itself";
         finding.tone = ToneCurve{0.0, 1.0, kPlainPower};
     }

@@ -248,6 +248,15 @@ bool is_one(const Plane<float>& plane, float value) {
     return true;
 }
 
+// Contrast pushes x and y beyond the unit circle, and cuts z off at 1. Of 370 colour pictures (wild4, and others that
+// no threshold was set on), none is like that but a normal map.
+bool are_cut_off(const KindMeasure& m) {
+    constexpr double kMostOff = 0.1, kLeastZ = 0.8, kMostCorrelated = 0.5, kMostBehind = 0.01;
+    const KindMeasure::Vectors& v = m.as(Reading::as_stored);
+    return v.off_centre() < kMostOff && v.z > kLeastZ && m.behind < kMostBehind &&
+           std::abs(m.correlation) < kMostCorrelated;
+}
+
 bool varies(const Plane<float>& plane) { return !is_one(plane, plane.at(0, 0)); }
 
 bool is_filler(const Plane<float>& plane) {
@@ -335,7 +344,7 @@ Kind kind_of(const KindMeasure& m, const Stored& stored, bool is_surface) {
     if (!has_alpha && is_filler(planes[0]) && is_filler(planes[2]) && m.deviation_y > thresholds::kNoiseOnly &&
         std::abs(m.as(Reading::as_stored).y) < thresholds::kLostCentred)
         return Kind::x_lost;
-    if (is_surface && are_stretched(m)) return Kind::normals;
+    if ((is_surface && are_stretched(m)) || are_cut_off(m)) return Kind::normals;
     if (!are_two_components(m, is_surface)) return Kind::no_map;
     // Averaged vectors, and those whose lengths are occlusion, are short; but they keep facing outwards.
     const bool is_faulty = m.behind > thresholds::kFewBehind || (m.null > thresholds::kFewNull && m.alpha_varies);

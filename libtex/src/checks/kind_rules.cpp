@@ -13,6 +13,7 @@
 #include <tex/format.h>
 
 #include "checks/byte_heights.h"
+#include "checks/centre.h"
 #include "checks/layout_fit.h"
 #include "checks/lengths.h"
 
@@ -63,7 +64,11 @@ bool check_surface_data(const CheckContext& context, Findings& findings) {
         return false;
     const double off = context.counts.share(Property::off_length), mean = context.counts.mean_x;
     if (off <= kColorShare || std::abs(mean) <= kFarMean) return false;
-    if (context.kind_measure.is_flat() && mean < 0.0) return false;  // no surface is that dark all over: stretched levels
+    // Red and green equally dark, but not 0 as where there is no occlusion, beside a blue of 1: normals whose levels
+    // were stretched.
+    constexpr double kAlike = 0.05, kUnused = -0.99, kOne = 0.9;
+    const KindMeasure::Vectors& v = context.kind_measure.as(Reading::as_stored);
+    if (v.x < 0.0 && v.x > kUnused && std::abs(v.x - v.y) < kAlike && v.z > kOne) return false;
     const double share = extreme_share(context.base.planes[2]);
     if (share < kExtremeShare) return false;
     add_share(findings, "N216",
@@ -119,6 +124,22 @@ FoundKind check_no_map(const CheckContext& context, Findings& findings) {
 // All texels are the same, and no vector.
 void check_constant(const CheckContext& context, Findings& findings) {
     if (context.options.any_length) return;
+    // The curve of sRGB makes one colour of a flat map, whose length alone is not far off.
+    constexpr float kCode = 1.5f / 255.0f;
+    const auto& low = context.counts.low;
+    for (const bool is_light : {true, false}) {
+        const auto middle = static_cast<float>(is_light ? srgb_encoded(0.5) : srgb_decoded(0.5));
+        const auto is_middle = [&](float c) { return std::abs(c - middle) < kCode; };
+        if (context.stored.is_signed || !is_middle(low[0]) || !is_middle(low[1]) || low[2] < 1.0f - kCode) continue;
+        Finding& finding =
+            findings.add(is_light ? "N302" : "N301", "every texel has R and G of " +
+                                                         decimal(255.0 * static_cast<double>(low[0]), 0) +
+                                                         " of 255, which the curve makes of 128");
+        finding.figure = static_cast<double>(low[0]);
+        finding.unit = "of full scale";
+        finding.confidence = 0.9;
+        return;
+    }
     const double length = context.counts.mean_length;
     if (std::abs(length - 1.0) <= kFarOffUnit || length < static_cast<double>(kNullLength)) return;
     Finding& finding =

@@ -74,8 +74,9 @@ constexpr Rule kTextureRules[] = {
     // -- the vectors ------------------------------------------------------------------------------------------
     {"N201", "not-unit-length", values, note, true, "Vectors are not of unit length.",
      "More than 5 % of the vectors are shorter or longer than 1 by more than two codes of 8 bits. Shaders that do not "
-     "normalise light them wrongly. Filters and blends without renormalisation do this, painting too. Some maps hold "
-     "occlusion in the lengths (Terrain3D); --length-in occlusion says so.",
+     "normalise light them wrongly. Filters and blends without renormalisation do this, painting too. If the mean "
+     "length is above 1.06, as after a contrast, this is a warning. Some maps hold occlusion in the lengths "
+     "(Terrain3D); --length-in occlusion says so.",
      "pack-normals FILE --normalize --format SAME -o FIXED", ""},
     {"N202", "z-below-zero", values, warning, true, "Vectors point into the surface.",
      "z is below zero by more than two codes, and below -0.1 in three of ten such texels: steep sides that were "
@@ -187,12 +188,12 @@ constexpr Rule kTextureRules[] = {
      "For other engines, let pack-normals read it with --swizzle abg; R, the gloss, is left out then.", ""},
 
     // -- damage -----------------------------------------------------------------------------------------------
-    {"N301", "srgb-decoded", damage, error, true, "The map went through the sRGB curve: it is too dark.",
+    {"N301", "srgb-decoded", damage, error, true, "The map is too dark, as the sRGB curve makes it.",
      "x and y centre on 0.21 instead of 0.5: somebody read the file as colour and stored linear values. Export the map "
      "again as data (Non-Color, Raw, sRGB off) if you have its source: turning the curve back leaves coarser steps.",
      "repair-normals FILE -o FIXED",
      "N201 N202 N203 N205 N206 N207 N213 N214 N215 N305 N307 N308 N309 N310 N401 N402 N403 N404 N501 N502 N504 N219"},
-    {"N302", "srgb-encoded", damage, error, true, "The map went through the sRGB curve: it is too light.",
+    {"N302", "srgb-encoded", damage, error, true, "The map is too light, as the sRGB curve makes it.",
      "x and y centre on 0.74 instead of 0.5: linear values were stored as if they were colour. Export the map again "
      "as data (Non-Color, Raw, sRGB off) if you have its source: turning the curve back leaves coarser steps.",
      "repair-normals FILE -o FIXED",
@@ -294,8 +295,9 @@ constexpr Rule kTextureRules[] = {
     {"N402", "mixed-y", convention, error, true, "Green points up in one part of the map and down in another.",
      "Maps of both conventions were pasted together, or a part of the map was mirrored. No setting of y is right for "
      "all of it, and --y-in measured refuses it. Judged only where most regions show one direction clearly.",
-     "Turn green over in one of the parts, where they were put together: the report shows which. In a part that was "
-     "mirrored from left to right, red points the wrong way instead.",
+     "Turn green over in one of the parts, or of the layers that were blended, before they are put together: the "
+     "report "
+     "shows which. In a part that was mirrored from left to right, red points the wrong way instead.",
      "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field, as many maps baked from high-poly meshes: the message names the "

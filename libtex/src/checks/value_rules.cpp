@@ -28,6 +28,7 @@ constexpr double kBlueOff = 0.001;  // share of the vectors that a filler in blu
 constexpr double kBeyondShare = 0.001;
 constexpr double kNullShare = 0.0001;
 constexpr double kNullShareBesideGrey = 0.002;  // if there is a background: what JPEG left of it far from its edge
+constexpr double kLongMean = 1.06;              // of 520 maps of strangers the greatest is 1.052
 constexpr double kFlatShare = 0.25;
 constexpr std::int64_t kFlatLeast = 256;  // texels
 constexpr double kLeanDegrees = 10.0;
@@ -100,6 +101,7 @@ void check_lengths(const CheckContext& context, Findings& findings) {
         if (is_stretched) {
             finding.message += "; lengths above 1 come from contrast, levels and sharpening, which turn vectors, too";
         }
+        if (counts.mean_length > kLongMean) findings.rate(finding, Severity::warning);
         find_levels_of(context, is_stretched, finding);
     }
     const double below = counts.share(Property::z_below);

@@ -31,4 +31,12 @@ Result<std::vector<std::byte>> read_beside(const std::string& path, const std::s
     return read_at_most(file, most);
 }
 
+Result<std::vector<std::byte>> read_named(const std::string& path, const std::string& name, std::int64_t most) {
+    auto bytes = read_beside(path, name, most);
+    if (bytes) return bytes;
+    Error error = bytes.error();
+    error.reason += ", which " + path.substr(name_begin(path)) + " names";
+    return error;
+}
+
 }  // namespace tex::inline v1

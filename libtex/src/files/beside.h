@@ -25,4 +25,7 @@ Result<std::vector<std::byte>> read_at_most(const std::string& path, std::int64_
 // Reads a file that the file at `path` names. Errors: those of check_regular() and read_at_most().
 Result<std::vector<std::byte>> read_beside(const std::string& path, const std::string& name, std::int64_t most);
 
+// Does that, and an error says which file names the one that it is about.
+Result<std::vector<std::byte>> read_named(const std::string& path, const std::string& name, std::int64_t most);
+
 }  // namespace tex::inline v1
