@@ -200,7 +200,14 @@ TEST_F(RepairNormals, FoldersKeepTheirTreeOrAreRepairedInPlace) {
     const auto written = std::filesystem::last_write_time(scratch_.path("art/clean.png"));
     EXPECT_EQ(go({"art", "--in-place", "--dry-run"}).code, 0);
     EXPECT_NE(bytes_of("art/bgr.png"), clean_);
-    EXPECT_EQ(go({"art/", "--in-place"}).code, 0);
+    std::filesystem::create_directory(scratch_.path("elsewhere"));
+    scratch_.write("elsewhere/bgr.png", scratch_.read("bgr.png"));
+    std::filesystem::create_symlink("../elsewhere/bgr.png", scratch_.path("art/link.png"));
+    std::filesystem::create_directory_symlink("../elsewhere", scratch_.path("art/folder"));
+    const Ran in_place = go({"art/", "--in-place"});
+    EXPECT_EQ(in_place.code, 0);
+    EXPECT_NE(in_place.out.find("; 2 files left out, which a link leads to"), std::string::npos) << in_place.out;
+    EXPECT_EQ(scratch_.read("elsewhere/bgr.png"), scratch_.read("bgr.png"));
     EXPECT_EQ(bytes_of("art/bgr.png"), clean_);
     EXPECT_EQ(bytes_of("art/deep/bgr.png"), clean_);
     EXPECT_NE(bytes_of("art/.git/bgr.png"), clean_);

@@ -168,6 +168,13 @@ Result<void> FileOptions::list_folder(const std::string& folder, std::vector<Inp
     };
     if (!std::all_of(found->files.begin(), found->files.end(), is_made))
         made_files_ += static_cast<std::int64_t>(std::erase_if(found->files, is_made));
+    // Through a link, a file elsewhere would be replaced, which nobody has named.
+    const auto is_linked = [&](const std::string& file) {
+        std::error_code error;
+        const fs::path real = fs::canonical(file, error), top = fs::canonical(folder, error);
+        return error || real != (top / fs::path(file).lexically_relative(folder)).lexically_normal();
+    };
+    if (in_place) linked_files_ += static_cast<std::int64_t>(std::erase_if(found->files, is_linked));
     for (std::string& file : found->files) {
         inputs.push_back({std::move(file)});
         inputs.back().folder = folder;
@@ -182,6 +189,7 @@ std::string FileOptions::left_out() const {
     };
     add(other_files_, other_files_ == 1 ? "is no picture" : "are no pictures");
     add(made_files_, "build-normals made");
+    add(linked_files_, "a link leads to");
     return text;
 }
 

@@ -77,7 +77,7 @@ private:
     void check_inputs(const Command& command);
 
     std::vector<std::string> argument_files_;
-    mutable std::int64_t other_files_ = 0, made_files_ = 0;  // what was left out of folders
+    mutable std::int64_t other_files_ = 0, made_files_ = 0, linked_files_ = 0;  // what was left out of folders
 };
 
 }  // namespace tex::cli

@@ -296,8 +296,7 @@ constexpr Rule kTextureRules[] = {
      "Maps of both conventions were pasted together, or a part of the map was mirrored. No setting of y is right for "
      "all of it, and --y-in measured refuses it. Judged only where most regions show one direction clearly.",
      "Turn green over in one of the parts, or of the layers that were blended, before they are put together: the "
-     "report "
-     "shows which. In a part that was mirrored from left to right, red points the wrong way instead.",
+     "report shows which. In a part that was mirrored from left to right, red points the wrong way instead.",
      "N310 N401 N403 N404"},
     {"N403", "y-undecidable", convention, note, true, "Which way green points cannot be told.",
      "The map is flat, noise, or no height field, as many maps baked from high-poly meshes: the message names the "
