@@ -60,6 +60,8 @@ TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
                                 "blend-normals", "convert-normals", "integrate-normals"}) {
         std::vector<std::string> arguments = {"srgb.dds", "plain.exr", "--out-dir", command, "--no-sync"};
         if (std::string_view(command) == "pack-normals") arguments.insert(arguments.end(), {"--mips", "keep"});
+        if (std::string_view(command) == "pack-normals" || std::string_view(command) == "mip-normals")
+            arguments.insert(arguments.end(), {"--format", "dxt5nm"});
         if (std::string_view(command) == "scale-normals") arguments.insert(arguments.end(), {"--scale", "2"});
         if (std::string_view(command) == "blend-normals") arguments.insert(arguments.end(), {"--detail", "plain.exr"});
         if (std::string_view(command) == "convert-normals")
@@ -69,6 +71,14 @@ TEST_F(Warnings, AreInTheJsonOfEveryCommandThatReadsNormals) {
         expect_warning(lines[0], "srgb.dds", "declares sRGB colours");
         EXPECT_EQ(lines[1]["warnings"], json::array()) << command;
     }
+}
+
+TEST_F(Warnings, SayThatTexelsBecomeBlocksUnasked) {
+    const auto lines = quiet("pack-normals", {"srgb.dds", "-o", "x.dds", "--mips", "keep", "--no-sync"});
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NE(lines[0]["warnings"].dump().find("rgba8 becomes dxt5nm, the default; --format rgba8 keeps it"),
+              std::string::npos)
+        << lines[0];
 }
 
 // Standard error sums up what concerns many files; the JSON does not.
