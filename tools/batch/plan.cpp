@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cli/text.h"
+#include "cli/text_file.h"
 #include "cli/usage_error.h"
 #include "tasks/collisions.h"
 #include "tasks/depfile.h"

@@ -8,6 +8,7 @@
 #include <tex/check.h>
 #include <tex/format.h>
 
+#include "cli/text.h"
 #include "reports/findings.h"
 #include "reports/fixes.h"
 #include "reports/html.h"
