@@ -22,7 +22,7 @@ namespace tex::cli {
 // The doubt that stays where N220 inverts blue back.
 [[nodiscard]] std::string inversion_words(bool is_in_model);
 
-// Whether the picture is none of normals, and no repair makes it one.
+// Whether the picture holds something else than normals, which no repair changes.
 [[nodiscard]] bool holds_no_normals(const Repaired& repaired);
 // The line for such a picture of a folder, which nobody has named.
 [[nodiscard]] std::string left_out_text(const std::string& name, const Repaired& repaired);
