@@ -169,6 +169,50 @@ TEST(RepairTone, AFlatMapThatWentThroughTheCurveIsFlatAgain) {
     EXPECT_EQ(codes_in(*done.texture).front(), 128);
 }
 
+// A plain power of 2.2, or its inverse, explains inverted blue nearly as well, and leaves a degree.
+TEST(RepairTone, TheCurveIsFoundBesideAnotherZ) {
+    const Texture plain = reference::texture_of(clean());
+    RepairOptions options;
+    options.likely = true;
+    for (const bool is_inverted : {true, false}) {
+        Codes codes = clean();
+        for (std::size_t k = 2; k < codes.values.size(); k += 3) {
+            const int z = codes.values[k];
+            codes.values[k] = static_cast<unsigned char>(is_inverted ? 255 - z : std::max(0, 2 * z - 255));
+        }
+        for (const bool is_encoded : {true, false}) {
+            const Codes stored = is_encoded ? reference::srgb_encode(codes) : reference::srgb_decode(codes);
+            const Repaired done = repaired(reference::texture_of(stored), options);
+            EXPECT_EQ(plan_of(done).substr(0, 4), is_encoded ? "N302" : "N301") << plan_of(done);
+            ASSERT_TRUE(done.texture);
+            EXPECT_LT(angle(*done.texture, plain), is_encoded ? 0.3 : 0.5) << plan_of(done);
+        }
+    }
+}
+
+// The middle of a map that leans by a degree lies where a plain power would have it, and its vectors are unit vectors
+// either way; but only one curve makes codes of 8 bits of all values.
+TEST(RepairTone, SixteenBitsThatWereEightProveTheCurve) {
+    Codes codes = clean();
+    for (std::size_t k = 0; k < codes.values.size(); ++k) {
+        if (k % 3 != 2) codes.values[k] = static_cast<unsigned char>(std::max(0, codes.values[k] - 2));
+    }
+    Texture texture = reference::texture_of(codes);
+    texture.format = Format::rgb16_unorm;
+    std::vector<std::byte>& bytes = texture.levels.front().bytes;
+    bytes.clear();
+    for (const unsigned char code : codes.values) {
+        const double c = code / 255.0, encoded = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1.0 / 2.4) - 0.055;
+        const auto value = static_cast<unsigned>(65535.0 * encoded + 0.5);
+        bytes.push_back(static_cast<std::byte>(value & 255u));
+        bytes.push_back(static_cast<std::byte>(value >> 8u));
+    }
+    const Repaired done = repaired(texture);
+    EXPECT_EQ(plan_of(done).substr(0, 4), "N302") << "safe";
+    ASSERT_TRUE(done.texture);
+    EXPECT_LT(angle(*done.texture, reference::texture_of(codes)), 0.05);
+}
+
 // Contrast pushes many vectors of a rough map beyond the unit circle, which is no reason to call it a picture.
 TEST(RepairTone, AContrastMakesNoPictureOfAMap) {
     Codes codes = reference::codes_of(bumps(24.0f));

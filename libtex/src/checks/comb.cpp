@@ -183,27 +183,29 @@ void CodeComb::collect_values(const Stored& stored, const Background* background
             if (is_used[k]) values_.push_back(static_cast<double>(k) / static_cast<double>(kTop));
         }
     }
-    if (fit_values({}).score > 0.0) values_.clear();  // they are codes of 8 bits as they are
+    if (fit_values({}, [](double c) { return c; }).score > 0.0) values_.clear();  // codes of 8 bits as they are
     codes_ = static_cast<int>(values_.size());
 }
 
-CombFit CodeComb::fit_values(const ToneCurve& curve) const {
+template <class Undo>
+CombFit CodeComb::fit_values(const ToneCurve& curve, Undo&& undo) const {
     constexpr double kLeastOnCodes = 0.8;  // the mean cosine: chance makes 0.1 of it
     double sum = 0.0;
-    for (const double value : values_) sum += math::cos(2.0 * math::kPi * 255.0 * undone(curve, value));
+    for (const double value : values_) sum += math::cos(2.0 * math::kPi * 255.0 * undo(value));
     const double mean = values_.empty() ? 0.0 : sum / static_cast<double>(values_.size());
     return {curve, mean < kLeastOnCodes ? 0.0 : mean, codes_};
 }
 
 CombFit CodeComb::fit(const ToneCurve& curve) const {
-    if (!values_.empty()) return fit_values(curve);
+    if (!values_.empty()) return fit_values(curve, [&](double c) { return undone(curve, c); });
     if (codes_ == 0 || is_shift(curve)) return {curve};  // a shift leaves no gaps
     const auto redo = [&](double c) { return redone(curve, c); };
     return fit_shares(curve, shares_of(redo, kHalf), shares_of(redo, kCut));
 }
 
 CombFit CodeComb::fit_srgb(bool is_encoded) const {
-    if (codes_ == 0 || !values_.empty()) return {};
+    if (!values_.empty()) return fit_values({}, is_encoded ? srgb_decoded : srgb_encoded);
+    if (codes_ == 0) return {};
     const auto redo = is_encoded ? srgb_encoded : srgb_decoded;
     return fit_shares({}, shares_of(redo, kHalf), shares_of(redo, kCut));
 }

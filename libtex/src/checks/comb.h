@@ -55,7 +55,8 @@ private:
     [[nodiscard]] double correlation(const Counts& shares) const;
     [[nodiscard]] double gap_evidence(const Counts& shares) const;
     void collect_values(const Stored& stored, const Background* background, const Plane<float>* alpha);
-    [[nodiscard]] CombFit fit_values(const ToneCurve& curve) const;
+    template <class Undo>
+    [[nodiscard]] CombFit fit_values(const ToneCurve& curve, Undo&& undo) const;
 
     struct Channel {
         std::array<double, kCodes> relative{};  // the count of a code over the mean about it

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -171,21 +172,26 @@ bool check_tone(const CheckContext& context, const Centre& centre, Findings& fin
 
 double power_of_middle() { return math::pow(0.5, 1.0 / kPlainPower); }
 
-// Whether a plain power of 2.2, which image editors call gamma 2.2, made the map light, and not the curve of sRGB,
-// which is close to it: the middle lies two codes lower, and the histogram shows it, or vectors are nearer to unit
-// length without it.
-bool is_plain_power(const CheckContext& context, const Centre& centre) {
-    const double by_power = centre.distance(power_of_middle()), by_srgb = centre.distance(srgb_encoded(0.5));
-    if (by_power >= by_srgb || !context.stored.has_z()) return false;
+// What made a map light whose middle lies nearer to a plain power of 2.2, which image editors call gamma 2.2, than to
+// the curve of sRGB, two codes above it: the histogram shows it, or vectors are nearer to unit length without it.
+enum class LightCurve { srgb, power, unknown };
+
+LightCurve light_curve(const CheckContext& context, const Centre& centre) {
+    if (centre.distance(power_of_middle()) >= centre.distance(srgb_encoded(0.5))) return LightCurve::srgb;
     const CodeComb comb(context.stored, context.background ? &*context.background : nullptr);
     const CombFit power = comb.fit({0.0, 1.0, kPlainPower}), srgb = comb.fit_srgb(true);
-    if (power.is_proof() && std::pair(power.gaps, power.score) > std::pair(srgb.gaps, srgb.score)) return true;
+    const auto beats = [](const CombFit& one, const CombFit& other) {
+        return one.is_proof() && std::pair(one.gaps, one.score) > std::pair(other.gaps, other.score);
+    };
+    if (beats(power, srgb)) return LightCurve::power;
+    if (beats(srgb, power)) return LightCurve::srgb;
+    if (!context.stored.has_z()) return LightCurve::unknown;
     const auto clamped = [](double c) { return std::clamp(c, 0.0, 1.0); };
     constexpr double kLead = 0.95;  // of 40 maps that went through the curve of sRGB, the least is 0.98
     const double with_power =
         length_error(context.stored, [&](double c, int, int) { return math::pow(clamped(c), kPlainPower); });
     const double with_srgb = length_error(context.stored, [&](double c, int, int) { return srgb_decoded(clamped(c)); });
-    return with_power < kLead * with_srgb;
+    return with_power < kLead * with_srgb ? LightCurve::power : LightCurve::unknown;
 }
 
 // What else may have moved the middle nearly as far as the curve of sRGB does: brightness, lightness, levels. z tells.
@@ -213,6 +219,25 @@ OtherTone other_tone(const CheckContext& context, const Centre& centre, bool is_
     return other;
 }
 
+// Whether the curve of sRGB explains z if it was inverted, or stored from 0 to 1, before. A plain power of 2.2, or its
+// inverse, explains it nearly as well; where the curve is steep, rounding alone makes errors of z, and the histogram
+// decides.
+bool is_srgb_of_other_z(const CheckContext& context, const Centre& centre, bool is_light) {
+    constexpr double kMostError = 1.2, kNearly = 1.2;  // codes, and a ratio
+    const Background* const background = context.background ? &*context.background : nullptr;
+    const ToneTexels texels = tone_texels(context.stored, background);
+    double error = std::numeric_limits<double>::infinity();
+    for (const ZForm form : possible_forms(texels)) {
+        if (form != ZForm::whole) error = std::min(error, error_of_srgb(is_light, texels, form));
+    }
+    const auto other = find_tone(context.stored, centre, background);
+    if (error < kMostError && (!other || error < other->error)) return true;
+    if (!other || error > kNearly * other->error) return false;
+    const CodeComb comb(context.stored, background);
+    const CombFit srgb = comb.fit_srgb(is_light);
+    return srgb.is_proof() && srgb.score > comb.fit(other->curve).score;
+}
+
 }  // namespace
 
 void check_curve(const CheckContext& context, const Centre& centre, Findings& findings) {
@@ -225,29 +250,29 @@ void check_curve(const CheckContext& context, const Centre& centre, Findings& fi
         check_tone(context, centre, findings);
         return;
     }
-    bool is_sure = true;
+    bool is_sure = true, is_of_other_z = false;
     if (context.stored.has_z()) {
         const double as_stored = length_error(context.stored, [](double c, int, int) { return c; });
         const double restored = length_error(context.stored, [&](double c, int, int) {
             return dark ? srgb_encoded(std::clamp(c, 0.0, 1.0)) : srgb_decoded(std::clamp(c, 0.0, 1.0));
         });
-        if (restored >= as_stored) {
-            check_tone(context, centre, findings);
-            return;
-        }
+        const bool is_shorter = restored < as_stored;
+        const OtherTone other = is_shorter ? other_tone(context, centre, light) : OtherTone{true};
+        is_of_other_z = other.is_known && is_srgb_of_other_z(context, centre, light);
         // The curve leaves z of 1 where it is, and x and y that vary would have another z: a contrast cut it off.
         const auto z = static_cast<std::size_t>(context.stored.channel(Component::z));
-        if (dark && context.counts.low[z] == 1.0f && restored > kUnitAfterDivision) {
+        const bool is_cut = dark && context.counts.low[z] == 1.0f && restored > kUnitAfterDivision;
+        if (!is_of_other_z && (is_cut || !is_shorter)) {
             check_tone(context, centre, findings);
             return;
         }
-        const OtherTone other = other_tone(context, centre, light);
-        if (other.is_known && check_tone(context, centre, findings)) return;
-        is_sure = !other.is_likely;
+        if (!is_of_other_z && other.is_known && check_tone(context, centre, findings)) return;
+        is_sure = is_of_other_z || !other.is_likely;
     }
-    const bool is_power = light && is_plain_power(context, centre);
-    // Where neither z nor the histogram tells them apart, the middle may speak for the power.
-    if (light && !is_power && centre.distance(power_of_middle()) < centre.distance(srgb_encoded(0.5))) is_sure = false;
+    const LightCurve made_light = light && !is_of_other_z ? light_curve(context, centre) : LightCurve::srgb;
+    const bool is_power = made_light == LightCurve::power;
+    // Where neither z nor the histogram tells them apart, the middle speaks for the power.
+    if (made_light == LightCurve::unknown) is_sure = false;
     Finding& finding =
         findings.add(dark ? "N301" : "N302", "x and y centre on " + decimal(255.0 * centre.x, 0) + " and " +
                                                  decimal(255.0 * centre.y, 0) + " of 255 instead of 128");

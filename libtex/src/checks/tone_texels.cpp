@@ -102,11 +102,11 @@ double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form) {
     return 255.0 * sum / static_cast<double>(std::max<std::size_t>(1, texels.size()));
 }
 
-double error_of_srgb(bool is_encoded, const ToneTexels& texels) {
+double error_of_srgb(bool is_encoded, const ToneTexels& texels, ZForm form) {
     const auto by = [](double (*of)(double)) {
         return [of](const ToneTexel& texel) { return ToneTexel{of(texel[0]), of(texel[1]), of(texel[2])}; };
     };
-    return mean_error(texels, ZForm::whole, by(is_encoded ? srgb_decoded : srgb_encoded),
+    return mean_error(texels, form, by(is_encoded ? srgb_decoded : srgb_encoded),
                       by(is_encoded ? srgb_encoded : srgb_decoded));
 }
 

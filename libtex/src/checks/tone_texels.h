@@ -36,7 +36,7 @@ double stored_z(ZForm form, double root);
 double error_of(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
 
 // This error of the curve of sRGB, encoding or decoding.
-double error_of_srgb(bool is_encoded, const ToneTexels& texels);
+double error_of_srgb(bool is_encoded, const ToneTexels& texels, ZForm form = ZForm::whole);
 
 // The share of texels whose z the curve does not cut off at 0 or 1. Where it cuts nearly all, any contrast fits.
 double share_uncut(const ToneCurve& curve, const ToneTexels& texels, ZForm form = ZForm::whole);
