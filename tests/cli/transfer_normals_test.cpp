@@ -46,6 +46,27 @@ TEST_F(TransferNormals, LimitsWhatNodesMultiply) {
     does({"sheet.obj", "high.glb", "-o", "n.png", "--front", "1", "--back", "1"});
 }
 
+// The translation of a node was lost in one of the files.
+TEST_F(TransferNormals, SaysThatMeshesOfOneSizeLieApart) {
+    std::istringstream lines(kSheetObj);
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream words(line);
+        std::string word;
+        double x = 0.0, y = 0.0, z = 0.0;
+        words >> word >> x >> y >> z;
+        if (word == "v") line = fmt::format("v {} {} {}", x + 0.25, y, z - 0.5);
+        text += line + "\n";
+    }
+    scratch_.write("moved.obj", text);
+    const Ran moved = go({"sheet.obj", "moved.obj", "-o", "n.png"});
+    EXPECT_NE(moved.err.find("the meshes have one size and do not lie on each other: the high one is off by (0.25, 0, "
+                             "-0.5); is the translation of a node missing"),
+              std::string::npos)
+        << moved.err;
+    EXPECT_EQ(go({"sheet.obj", "sheet.obj", "-o", "n.png"}).err.find("do not lie on each other"), std::string::npos);
+}
+
 // The sheet in centimetres, and with y up.
 TEST_F(TransferNormals, PlacesHighMeshesOfAnotherUnitAndOtherAxes) {
     std::istringstream lines(kSheetObj);

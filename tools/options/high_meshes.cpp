@@ -349,6 +349,11 @@ void HighMeshes::compare(Job& job, const MeshPart& low, const HighParts& high) c
             fmt::format("both meshes differ in unit or axes, and would fit with {} (FBX files are in centimetres, glTF "
                         "in metres; some programs have z up)",
                         units->arguments()));
+    } else if (const auto offset = is_known ? std::nullopt : offset_between(low, high.parts, high.places)) {
+        job.warn(
+            fmt::format("the meshes have one size and do not lie on each other: the high one is off by ({:.3g}, "
+                        "{:.3g}, {:.3g}); is the translation of a node missing in one of the files?",
+                        (*offset)[0], (*offset)[1], (*offset)[2]));
     }
     if (low.triangles() <= 2 * triangles) return;
     job.warn(

@@ -74,6 +74,15 @@ struct Box {
     }
 };
 
+// Parts with places stand there; of each, the box of its own box counts.
+Box box_of(const std::vector<MeshPart>& parts, const std::vector<PartPlace>& places) {
+    Box box;
+    std::vector<Box> boxes(places.empty() ? 0 : parts.size());
+    for (std::size_t k = 0; k < parts.size(); ++k) (places.empty() ? box : boxes[k]).include(parts[k]);
+    for (const PartPlace& place : places) box.include(boxes[place.part], place.to_scene);
+    return box;
+}
+
 }  // namespace
 
 std::array<double, 3> MeshUnits::of(const std::array<double, 3>& p) const {
@@ -109,11 +118,9 @@ std::string MeshUnits::arguments() const {
 
 std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high,
                                        const std::vector<PartPlace>& places) {
-    Box low_box, high_box;
+    Box low_box;
     low_box.include(low);
-    std::vector<Box> boxes(places.empty() ? 0 : high.size());
-    for (std::size_t k = 0; k < high.size(); ++k) (places.empty() ? high_box : boxes[k]).include(high[k]);
-    for (const PartPlace& place : places) high_box.include(boxes[place.part], place.to_scene);
+    const Box high_box = box_of(high, places);
     const double diagonal = low_box.diagonal();
     if (low_box.distance(high_box) <= kFar * diagonal) return std::nullopt;
     std::optional<MeshUnits> best;
@@ -128,6 +135,24 @@ std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<Me
         }
     }
     return best;
+}
+
+std::optional<std::array<double, 3>> offset_between(const MeshPart& low, const std::vector<MeshPart>& high,
+                                                    const std::vector<PartPlace>& places) {
+    constexpr double kSameSize = 0.02, kApart = 0.05;  // of the low mesh's diagonal
+    Box low_box;
+    low_box.include(low);
+    const Box high_box = box_of(high, places);
+    const double diagonal = low_box.diagonal();
+    std::array<double, 3> offset{};
+    double squared = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double at_low = high_box.low[k] - low_box.low[k], at_high = high_box.high[k] - low_box.high[k];
+        if (!(std::abs(at_high - at_low) <= kSameSize * diagonal)) return std::nullopt;
+        offset[k] = (at_low + at_high) / 2.0;
+        squared += offset[k] * offset[k];
+    }
+    return std::sqrt(squared) > kApart * diagonal ? std::optional(offset) : std::nullopt;
 }
 
 }  // namespace tex::cli

@@ -35,8 +35,14 @@ struct MeshUnits {
 };
 
 // The units with which the box of the high mesh is that of the low one, nearly, if both are far apart without them.
-// Parts with places stand there; of each, the box of its own box counts.
+// `places` are those of the parts of the high mesh in its scene.
 [[nodiscard]] std::optional<MeshUnits> fitting_units(const MeshPart& low, const std::vector<MeshPart>& high,
                                                      const std::vector<PartPlace>& places = {});
+
+// How far the box of the high mesh lies from that of the low one, if both have one size and do not lie on each other: a
+// translation is missing in one of them.
+[[nodiscard]] std::optional<std::array<double, 3>> offset_between(const MeshPart& low,
+                                                                  const std::vector<MeshPart>& high,
+                                                                  const std::vector<PartPlace>& places = {});
 
 }  // namespace tex::cli
