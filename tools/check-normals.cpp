@@ -19,6 +19,7 @@
 #include "reports/findings.h"
 #include "reports/github.h"
 #include "reports/kinds.h"
+#include "reports/model_fixes.h"
 #include "tree/state.h"
 
 namespace {
@@ -238,6 +239,7 @@ Result<void> CheckNormals::process_model(cli::Job& job) {
     job.report["findings"] = cli::Json::array();
     ModelCheckOptions options{rules_.demands_of(job.task.input).checks, {}, mesh_.decoder(), mesh_.tangents()};
     options.checks.marks = documents_.marks();
+    cli::ModelFixes fixes;
     for (std::size_t k = 0; k < maps->size(); ++k) {
         const ModelMap& map = (*maps)[k];
         const double share = (static_cast<double>(k) + 1.0) / static_cast<double>(maps->size());
@@ -246,15 +248,19 @@ Result<void> CheckNormals::process_model(cli::Job& job) {
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
         if (!report) return report.error();
         if (report->error && report->error->code == ErrorCode::cancelled) return *report->error;
+        const std::string material = report->material;
         auto json = judge_in_model(job, std::move(*report), seconds.count(), *model, map);
         if (!json) return json.error();
         for (cli::Json& finding : (*json)["findings"]) {
+            if (const auto fix = finding.find("fix"); fix != finding.end())
+                fixes.add(fix->get<std::string>(), material);
             finding["map"] = (*json)["map"];
             job.report["findings"].push_back(std::move(finding));
         }
         json->erase("findings");
         job.report["maps"].push_back(std::move(*json));
     }
+    if (!documents_.is_for_github()) job.say(fixes.text(job.task.input));
     const std::lock_guard lock(mutex_);
     ++totals_.files;
     return {};

@@ -136,6 +136,9 @@ TEST_F(ConvertedModels, CheckNormalsPrintsTheCommand) {
     const std::string fixed = go("check-normals both.glb --quiet").out;
     EXPECT_NE(fixed.find("0 errors, 0 warnings"), std::string::npos) << fixed;
     for (const char* const id : {"N701", "N705", "N706"}) EXPECT_EQ(fixed.find(id), std::string::npos) << fixed;
+    const std::string in_one_run = "convert-normals turned.glb --tangents mikktspace -o FIXED.glb";
+    EXPECT_NE(turned.find("turned.glb: all of these in one run: " + in_one_run + "\n"), std::string::npos) << turned;
+    does(in_one_run + "; cmp FIXED.glb both.glb");
 }
 
 // Maps that were made for the tangents of the file look the same on others, with two maps in place of one.

@@ -324,6 +324,24 @@ TEST_F(ModelOutputs, RepairsChangeDamagedMapsAlone) {
     does("repair-normals h.gltf --bumpiness 4 -o baked.gltf; check-normals baked.gltf");
 }
 
+TEST_F(ModelOutputs, OneRunMendsWhatTheFixesMendOneByOne) {
+    does(
+        "convert maps/up.png -set colorspace RGB -colorspace sRGB -strip maps/light.png; cp maps/light.png maps/b.png");
+    write_model_of("two.gltf", {"maps/light.png", "maps/b.png", "maps/up.png"});
+    const std::string two = go("check-normals two.gltf").out;
+    const std::string command = "repair-normals two.gltf -o FIXED.gltf";
+    EXPECT_NE(two.find("two.gltf: all of these in one run: " + command + "\n"), std::string::npos) << two;
+    does(command + "; check-normals FIXED.gltf --disable N403");
+    does("convert maps/up.png -channel G -negate +channel maps/down.png");
+    write_model_of("kinds.gltf", {"maps/light.png", "maps/down.png"}, 1.0f);
+    const std::string kinds = go("check-normals kinds.gltf").out;
+    EXPECT_NE(kinds.find("kinds.gltf: each fix reads the model as it is: give it the FIXED of the one before\n"),
+              std::string::npos)
+        << kinds;
+    write_model_of("one.gltf", {"maps/light.png"});
+    EXPECT_EQ(go("check-normals one.gltf").out.find("in one run"), std::string::npos);
+}
+
 TEST_F(ModelOutputs, RepairsLeaveWhatTangentsMakeUpFor) {
     write_model_of("agree.gltf", {"maps/down.png"}, 1.0f);
     EXPECT_NE(does("repair-normals agree.gltf --dry-run --mirrored green").out.find("N401"), std::string::npos);
