@@ -240,7 +240,8 @@ void BakeNormals::warn_of_border(cli::Job& job, double ratio) const {
     if (ratio <= cli::kWallRatio || command.given("--wrap") || files.tiles) return;
     walls_.add(job, job.task.input,
                "a wall along the border, steeper than anything inside: these heights do not repeat, but are baked as "
-               "if they did; --wrap clamp ends them there (--wrap repeat silences this warning)");
+               "if they did; --wrap clamp ends them there (--wrap repeat silences this warning; in a manifest, wrap = "
+               "\"clamp\" or \"repeat\")");
 }
 
 // Occlusion by what lies beyond the tiles around a tile.

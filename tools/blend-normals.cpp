@@ -71,7 +71,7 @@ BlendNormals::BlendNormals(const cli::ProgramRow& row) : NormalsConverter(row) {
     add_blend();
     layers_.add(command);
     normals.add(command);
-    output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base");
+    output.add(command, "as in the base if it fits, else " + cli::default_encodings(), "as in the base", true);
     output.add_engines(command);
     extras.add(command, output, &normals);
     mips_.add(command, false, "all in dds and ktx2, else none");

@@ -184,7 +184,7 @@ Result<void> IntegrateNormals::write_heights(cli::Job& job, std::vector<Integrat
     job.report["bytes"] = written->bytes;
     if (job.task.output != "-" && bumpiness[0] == bumpiness[1])
         job.say(fmt::format("{}: bake-normals --bumpiness {} bakes the map back, but for {:.2f} degrees in the mean\n",
-                            cli::printable(job.task.output), bumpiness[0], base.curl.mean));
+                            cli::printable(cli::written_name(job.task.output)), bumpiness[0], base.curl.mean));
     return {};
 }
 

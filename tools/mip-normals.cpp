@@ -34,7 +34,7 @@ private:
 
 MipNormals::MipNormals(const cli::ProgramRow& row) : PackCommand(row) {
     add_files("normal maps; - is standard input");
-    output.add(command, cli::default_encodings(), "as in the input");
+    output.add(command, cli::default_encodings(), "as in the input", true);
     output.add_engines(command);
     extras.add(command, output, &normals);
     mips_.add(command, false, "all");
@@ -81,15 +81,17 @@ Result<void> MipNormals::check(const std::vector<cli::Task>& tasks) {
     for (const cli::Task& task : tasks) {
         if (mips_.levels || can_hold_levels(task.container) || cli::has_level(task.output)) continue;
         const std::string_view type = name_of(kContainerNames, task.container);
-        if (task.engine != nullptr && !task.engine->has_mips)
+        const bool engine_builds = task.engine != nullptr && !task.engine->has_mips;
+        // The levels are those of roughness.
+        if (engine_builds && roughness_.is_given()) continue;
+        if (engine_builds)
             throw cli::UsageError(
                 cli::printable(task.output),
                 fmt::format("{} files hold one level, and {} builds the others: pack-normals --for {} makes such a "
                             "file; .dds, .ktx2 and .exr hold all",
                             type, task.engine->name, task.engine->name));
         throw cli::UsageError(
-            fmt::format("{}: {} files hold one level; give .dds, .ktx2 or .exr, or --name with "
-                        "{{level}}",
+            fmt::format("{}: {} files hold one level; give .dds, .ktx2 or .exr, or a name with {{level}}",
                         cli::printable(task.output), type));
     }
     return {};

@@ -41,7 +41,7 @@ PackNormals::PackNormals(const cli::ProgramRow& row) : PackCommand(row) {
     command.usage("MODEL -o MODEL");
     command.text(material_, "--material", "NAME", "of models, only the maps of this material, or of its number from 0");
     command.flag(normalize_, "--normalize", "make vectors unit also where that changes codes that could stay");
-    output.add(command, cli::default_encodings(), "as in the input");
+    output.add(command, cli::default_encodings(), "as in the input", true);
     output.add_engines(command);
     extras.add(command, output, &normals);
     mips_.add(command, true, "keep");

@@ -99,7 +99,7 @@ Result<void> PreviewNormals::check(const std::vector<cli::Task>& tasks) {
         throw cli::UsageError(idle.front() + (mesh_.has_mesh() ? " has no meaning with --mesh" : " is not for models"));
     for (const cli::Task& task : tasks) {
         cli::OutputOptions::check_holds(task.output, task.container, Encoding::rgb8);
-        if (cli::has_level(task.output)) throw cli::UsageError("--name", "{level} has no meaning for pictures");
+        if (cli::has_level(task.output)) throw cli::UsageError("{level} has no meaning for pictures");
         sheet_.check(task);
         if (mesh_.has_mesh() && task.tile != 0 && !task.joined.empty())
             throw cli::UsageError("each tile of a mesh becomes its own picture: give --out-dir, not -o");

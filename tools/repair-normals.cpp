@@ -107,7 +107,7 @@ RepairNormals::RepairNormals(const cli::ProgramRow& row) : Converter(row) {
         .often(5, "print what would be done, and write nothing");
     report_.add(command);
     repairing_.add(command);
-    output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
+    output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input", true);
     running.add(command);
     command.check([this] {
         for (const std::string& option : command.given_of({"--update", "--depfile"}))

@@ -47,7 +47,7 @@ ScaleNormals::ScaleNormals(const cli::ProgramRow& row) : PackCommand(row) {
         .preset = "";
     command.choice(mode_, "--scale-mode", "M", kScaleModeNames, "how normals are scaled");
     normals.add(command);
-    output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input");
+    output.add(command, "as in the input if it fits, else " + cli::default_encodings(), "as in the input", true);
     extras.add(command, output, &normals);
     running.add(command);
     command.example("scale-normals bricks.dds -o strong.dds --scale 2",

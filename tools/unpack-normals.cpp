@@ -53,7 +53,7 @@ UnpackNormals::UnpackNormals(const cli::ProgramRow& row) : PackCommand(row) {
         .often(3, "make normals steeper or flatter");
     command.choice(scale_mode_, "--scale-mode", "M", kScaleModeNames, "how they are scaled");
     apart_.add(command, files, normals);
-    output.add(command, cli::default_encodings(Encoding::rgb8), "as in the input", Container::png);
+    output.add(command, cli::default_encodings(Encoding::rgb8), "as in the input", false, Container::png);
     running.add(command);
     command.example("unpack-normals bricks.dds -o bricks.png", "The base level as a picture, whatever its layout.");
     command.example("unpack-normals bricks.dds -o bricks.exr --scale 0.5 --scale-mode xy",

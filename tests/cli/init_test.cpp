@@ -92,9 +92,11 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
     const Ran ran =
         shell(scratch_, "check-normals --classify art/wall_n.png bought/brick_nrm.tga art/wall_h.png colour.png");
     EXPECT_EQ(ran.code, 0) << ran.err;
-    EXPECT_NE(ran.out.find("normals       rgb      up    1.00  art/wall_n.png"), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find("normals       rgb      down  1.00  bought/brick_nrm.tga"), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find("grey          -        -     1.00  art/wall_h.png"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("normals       rgb      up    1.00  rgb8-unorm"), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("normals       rgb      down  1.00  rgb8-unorm  512x512     1  bought/brick_nrm.tga"),
+              std::string::npos)
+        << ran.out;
+    EXPECT_NE(ran.out.find("grey          -        -     1.00  r8-unorm "), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("colour        -        -"), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("4 files: 2 normals (green up in 1, down in 1), 1 grey, 1 colour"), std::string::npos)
         << ran.out;
@@ -103,7 +105,9 @@ TEST_F(Init, ClassifySaysWhatPicturesHold) {
     scratch_.write("no.png", "no picture");
     const Ran broken = shell(scratch_, "check-normals --classify no.png art/wall_n.png");
     EXPECT_EQ(broken.code, 4);
-    EXPECT_NE(broken.out.find("unknown       -        -     -     no.png: "), std::string::npos) << broken.out;
+    EXPECT_NE(broken.out.find("unknown       -        -     -     -           -           -  no.png: "),
+              std::string::npos)
+        << broken.out;
     EXPECT_NE(broken.err.find("error: no.png: "), std::string::npos) << broken.err;
     EXPECT_EQ(shell(scratch_, "check-normals --classify art/wall_n.png --report r.html").code, 2);
 }

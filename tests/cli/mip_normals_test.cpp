@@ -104,6 +104,8 @@ TEST_F(MipNormals, EachLevelCanHaveAPicture) {
         ASSERT_TRUE(picture);
         EXPECT_EQ(picture->extent(), level_extent({64, 64}, level));
     }
+    does("mip-normals", {"n.png", "-o", "one_{level}.png"});
+    EXPECT_EQ(scratch_.read("one_3.png"), scratch_.read("levels/n_mip3.png"));
 }
 
 TEST_F(MipNormals, LargeLevelsCanBeLeftOut) {

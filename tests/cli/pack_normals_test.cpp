@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -35,6 +37,11 @@ protected:
             EXPECT_TRUE(ran.err.empty() || is_noise) << ran.err;
         }
         EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+    }
+    std::string_view format_of(const std::string& name) {
+        const auto texture = read_texture(scratch_.path(name));
+        EXPECT_TRUE(texture) << name;
+        return texture ? name_of(kFormatNames, texture->format) : std::string_view();
     }
     // The largest and the mean angle between the base levels of two files, in degrees.
     AngularError distance(const std::string& a, const std::string& b) {
@@ -135,10 +142,37 @@ TEST_F(PackNormals, LevelsAreKeptUnlessOthersAreAskedFor) {
 TEST_F(PackNormals, BlocksThatBecomeTheDefaultEncodingAreNamed) {
     does("pack-normals", {"n.dds", "-o", "b.dds", "--format", "bc5"});
     does("pack-normals", {"b.dds", "-o", "c.dds", "--y", "down"},
-         "bc5 becomes dxt5nm, the default; --format bc5 keeps it");
-    does("pack-normals", {"b.dds", "-o", "d.dds", "--y", "down", "--format", "bc5"});
+         "bc5 becomes dxt5nm, the default; --format keep keeps it");
+    does("pack-normals", {"b.dds", "-o", "d.dds", "--y", "down", "--format", "keep"});
+    EXPECT_EQ(format_of("d.dds"), "bc5-unorm");
     does("pack-normals", {"b.dds", "-o", "e.dds", "--format", "dxt5nm"});
     does("unpack-normals", {"b.dds", "-o", "f.dds"});
+}
+
+TEST_F(PackNormals, KeepStoresEachFileOfAFolderAsItWas) {
+    const std::pair<std::string, std::string> kinds[] = {
+        {"a.dds", "bc5"}, {"b.dds", "rgba8"}, {"c.dds", "dxt5nm"}, {"d.ktx2", "bc7"}, {"e.png", "rgb16"}};
+    std::vector<std::string> names;
+    for (const auto& [name, format] : kinds) {
+        does("pack-normals", {"n.dds", "-o", name, "--format", format});
+        names.push_back(name);
+    }
+    std::vector<std::string> args = names;
+    args.insert(args.end(), {"--out-dir", "flipped", "--y-in", "up", "--y", "down", "--format", "keep"});
+    does("pack-normals", args);
+    for (const std::string& name : names) EXPECT_EQ(format_of("flipped/" + name), format_of(name)) << name;
+    args = names;
+    args.insert(args.end(), {"--out-dir", "levels", "--format", "keep", "--mips", "none"});
+    does("mip-normals", args);
+    for (const std::string& name : names) EXPECT_EQ(format_of("levels/" + name), format_of(name)) << name;
+    // Texels go into blocks as always, because a picture is no texture.
+    does("pack-normals", {"e.png", "-o", "f.dds", "--format", "keep"});
+    EXPECT_EQ(format_of("f.dds"), "bc3-unorm");
+    const Ran unknown =
+        go("pack-normals", {"a.dds", "--out-dir", "x", "--name", "{stem}_{format}.dds", "--format", "keep"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("{format} in a name needs a --format other than keep"), std::string::npos)
+        << unknown.err;
 }
 
 TEST_F(PackNormals, FlippingTwiceGivesTheSameWhereLengthsAreKept) {

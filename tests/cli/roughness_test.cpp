@@ -341,6 +341,22 @@ TEST_F(RoughnessOut, GoesWithEachInputOfMany) {
     EXPECT_TRUE(same_red("h.png", "out/n_r8_0.png"));
 }
 
+// The engine builds the levels of the normals, which a picture does not hold, and not those of roughness.
+TEST_F(RoughnessOut, HasItsLevelsBesideAPictureForAnEngine) {
+    does("mip-normals", {"n.png", "-o", "n.dds", "--roughness-in", "0.3", "--roughness-out", "all.dds"});
+    does("mip-normals",
+         {"n.png", "-o", "for.png", "--for", "unreal", "--roughness-in", "0.3", "--roughness-out", "r.dds"});
+    EXPECT_EQ(scratch_.read("r.dds"), scratch_.read("all.dds"));
+    const auto levels = [&](const std::string& name) {
+        return read_texture(scratch_.path(name)).value().levels.size();
+    };
+    EXPECT_EQ(levels("for.png"), 1u);
+    EXPECT_EQ(levels("r.dds"), levels("n.dds"));
+    does("mip-normals",
+         {"n.png", "--out-dir", "out", "--for", "gltf", "--roughness-in", "0.3", "--roughness-out", "r_{level}.png"});
+    EXPECT_TRUE(scratch_.has("out/r_1.png"));
+}
+
 TEST_F(RoughnessOut, MisuseIsRefused) {
     refuses({"--roughness-in", "0.5"}, 2, "--roughness-in does nothing without --roughness-out");
     refuses({"--roughness-out", ""}, 2, "--roughness-out");

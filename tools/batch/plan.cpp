@@ -28,7 +28,9 @@ bool is_block_encoding(Encoding encoding) { return format_info(encoding_info(enc
 std::string default_pattern(const Input& input, const FileOptions& files, const OutputOptions& output,
                             const OutputRules& rules) {
     std::optional<Container> container = output.made_container();
-    if (!container && output.format) {
+    if (!container && output.keeps_format) {
+        container = container_of(input.name);
+    } else if (!container && output.format) {
         if (is_block_encoding(*output.format))
             container = can_hold(Container::dds, *output.format) ? Container::dds : Container::ktx2;
     } else if (!container) {
@@ -66,15 +68,16 @@ std::string output_name(const Input& input, const FileOptions& files, const Outp
         throw UsageError(printable(input.name), "is a directory; name its files");
     output.fill(fields);
     if (const NamePattern parsed(pattern); !output.format && parsed.uses("format")) {
+        output.check_knows_format();
         const Container container = output.container_for(parsed.expand(fields), rules.standard_output);
         fields.format = name_of(kEncodingNames, rules.encoding(container));
     }
     return with_tile(files.place(pattern, fields), rules.tiles ? input.tile : 0);
 }
 
-// The name that -o gives for this input.
+// The name that -o gives for this input. Of the fields of --name it knows {level}.
 std::string output_of(const std::string& pattern, const Input& input) {
-    return input.place ? with_grid(pattern, *input.place) : with_tile(pattern, input.tile);
+    return marked_name(input.place ? with_grid(pattern, *input.place) : with_tile(pattern, input.tile));
 }
 
 // Engines decode 2c - 1, in whatever file, and our files of floats hold x, y and z themselves.

@@ -60,7 +60,8 @@ PackFileOptions PackCommand::all_options(Job& job) const {
     // Otherwise y stays as it is, and neither the output nor the user states it.
     with.source.doubt_y = own.y.has_value() || with.source.unpack.y_axis.has_value();
     with.pack = [this, own, &job](const SourceInfo& info) {
-        return own.pack_options(own.format ? *own.format : encoding(info, job.task), info.y_axis, info.y_known);
+        const Encoding usual = own.keeps_format ? encoding_of(info, job.task) : encoding(info, job.task);
+        return own.pack_options(own.format.value_or(usual), info.y_axis, info.y_known);
     };
     with.write = own.write_options(job);
     with.level_names = level_names(job.task.output);
@@ -94,8 +95,8 @@ Result<void> PackCommand::process(Job& job) {
     if (!output.of(job.task.engine).format && is_from_texture && now == default_encoding(job.task.container) &&
         before != now) {
         repeated_.add(job, job.task.input,
-                      fmt::format("{} becomes {}, the default; --format {} keeps it", name_of(kEncodingNames, before),
-                                  name_of(kEncodingNames, now), name_of(kEncodingNames, before)));
+                      fmt::format("{} becomes {}, the default; --format keep keeps it", name_of(kEncodingNames, before),
+                                  name_of(kEncodingNames, now)));
     }
     // Nobody chose the file type: it is that of the input.
     if (job.task.container == Container::jpeg &&

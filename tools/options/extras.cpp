@@ -133,7 +133,7 @@ void ExtraOptions::set_layout(const Command& command, OutputOptions& output) {
         }
         if (!row.blue && choices_.blue.from != Choice::From::nothing)
             throw UsageError(fmt::format("--layout {} has z in blue", name_of(kLayoutNames, row.layout)));
-        if (!output.format) output.format = Encoding::rgba8;
+        if (!output.format && !output.keeps_format) output.format = Encoding::rgba8;
         if (!output.y) output.y = row.y;
         if (!blue_kind_) blue_kind_ = row.blue.value_or(ExtraKind::mask);
         if (!alpha_kind_) alpha_kind_ = row.alpha;

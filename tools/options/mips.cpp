@@ -87,7 +87,7 @@ void MipChainOptions::check(const std::vector<Task>& tasks) const {
     for (const Task& task : tasks) {
         if (can_hold_levels(task.container) || has_level(task.output)) continue;
         throw UsageError(
-            fmt::format("{}: {} files hold one level; --mips needs .dds, .ktx2 or .exr, or --name with {{level}}",
+            fmt::format("{}: {} files hold one level; --mips needs .dds, .ktx2 or .exr, or a name with {{level}}",
                         printable(task.output), name_of(kContainerNames, task.container)));
     }
 }

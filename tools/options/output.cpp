@@ -50,6 +50,7 @@ std::string containers_for(Encoding encoding) {
     return join(names);
 }
 
+constexpr const char* kKeep = "keep";
 constexpr int kDefaultZstd = 9;
 
 // "zstd", "zstd:LEVEL" or "none".
@@ -83,12 +84,10 @@ std::string default_encodings(Encoding of_textures) {
     return text;
 }
 
-void OutputOptions::add(Command& command, std::string format_default, std::string y_default,
+void OutputOptions::add(Command& command, std::string format_default, std::string y_default, bool with_keep,
                         Container standard_output) {
     command.group("Output");
-    command.choice(format, "--format", "F", kEncodingNames, "how normals are stored")
-        .often(3, "how normals are stored: dxt5nm, bc5, rgb8 ...")
-        .preset = std::move(format_default);
+    add_format(command, std::move(format_default), with_keep);
     command
         .choice(container, "--container", "TYPE", kContainerNames,
                 "the file type, if the output's name does not say it (a pipe)")
@@ -109,6 +108,19 @@ void OutputOptions::add(Command& command, std::string format_default, std::strin
         .option("--quality", "N", "the quality of JPEG files, from 1 (small) to 100",
                 [this](const std::string& text) { quality = parse_int(text, range_of(&WriteOptions::jpeg_quality)); })
         .preset = std::to_string(WriteOptions{}.jpeg_quality);
+}
+
+void OutputOptions::add_format(Command& command, std::string preset, bool with_keep) {
+    std::vector<Word> words = words_of(kEncodingNames);
+    if (with_keep) words.push_back({kKeep, "that of each input, if the file type can hold it"});
+    Option& row = command.option("--format", "F", "how normals are stored",
+                                 [this, valid = names_of(words)](const std::string& text) {
+                                     format = find_by_name(kEncodingNames, known_word(text, valid));
+                                     keeps_format = !format;
+                                 });
+    row.often(3, "how normals are stored: dxt5nm, bc5, rgb8 ...").preset = std::move(preset);
+    row.words = std::move(words);
+    row.completes = Completes::words;
 }
 
 void OutputOptions::add_rdo(Command& command) {
@@ -147,7 +159,7 @@ OutputOptions OutputOptions::of(const Engine* its_engine) const {
     OutputOptions options = *this;
     options.engine = its_engine;
     if (its_engine == nullptr) return options;
-    if (!format) options.format = its_engine->format;
+    if (!format && !keeps_format) options.format = its_engine->format;
     if (!y) options.y = its_engine->y;
     return options;
 }
@@ -194,6 +206,10 @@ Container OutputOptions::container_of_output(const std::string& output, Containe
     throw UsageError(printable(output),
                      fmt::format("{}; it must be one of {}, or give --container{}", what, known_extensions(),
                                  extension.empty() ? "" : unwritten_type_answer(extension.substr(1))));
+}
+
+void OutputOptions::check_knows_format() const {
+    if (keeps_format) throw UsageError("{format} in a name needs a --format other than keep");
 }
 
 void OutputOptions::check_holds(const std::string& output, Container container, Encoding encoding) {

@@ -20,6 +20,7 @@ class Job;
 
 struct OutputOptions {
     std::optional<Encoding> format;      // none: the container's default, or another default of the command
+    bool keeps_format = false;           // --format keep: each input's, if the container can hold it
     std::optional<Container> container;  // none: from the output's extension
     std::optional<YAxis> y;              // none: the input's
     Effort effort = PackOptions{}.effort;
@@ -32,8 +33,8 @@ struct OutputOptions {
     std::vector<const Engine*> engines;  // of --for; each input gives an output for each
     const Engine* engine = nullptr;      // the engine of these options, which of() has set
 
-    // `format_default` and `y_default` appear in the help.
-    void add(Command& command, std::string format_default, std::string y_default,
+    // `format_default` and `y_default` appear in the help. With `with_keep`, --format has the word keep.
+    void add(Command& command, std::string format_default, std::string y_default, bool with_keep = false,
              Container standard_output = Container::dds);
     // Adds --for, for commands that also have MipChainOptions.
     void add_engines(Command& command);
@@ -61,10 +62,14 @@ struct OutputOptions {
     // The job's write options, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
 
+    // For names with {format}: throws UsageError with --format keep, which is known only once an input is read.
+    void check_knows_format() const;
+
     // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 
 private:
+    void add_format(Command& command, std::string preset, bool with_keep);
     void add_rdo(Command& command);
     [[nodiscard]] Container container_of_output(const std::string& output, Container standard_output) const;
 };

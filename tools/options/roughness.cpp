@@ -279,13 +279,14 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     const std::string path = output_of(job.task), shown = written_name(path);
     const std::vector<std::string> normals = job.outputs();
     if (has_level(job.task.output)) job.report["output"] = normals;
-    wrote_levels(job, path, packed.levels);
+    const int levels = packed.roughness_levels;
+    wrote_levels(job, path, levels);
     const std::vector<std::string> written(job.outputs().begin() + static_cast<std::ptrdiff_t>(normals.size()),
                                            job.outputs().end());
     const bool is_known = value_ || !input_.file.empty() || !into_.file.empty();
     if (!is_known) {
         job.warn(fmt::format("without --roughness-in, the material's own roughness is 0, a mirror; {} has nothing else",
-                             packed.levels == 1 ? "the only level" : "the base level"),
+                             levels == 1 ? "the only level" : "the base level"),
                  shown);
     }
     if (into_.file.empty() && parts_for(job.task)[3] == RoughnessPart::smoothness) {
@@ -303,7 +304,7 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
                         name_of(kRoughnessFormatNames, packed.roughness_format)),
             shown);
     }
-    if (is_known && packed.levels == 1 && packed.left_out == 0) {
+    if (is_known && levels == 1 && packed.left_out == 0) {
         job.warn("one level loses no variance, so its roughness is the material's own, unchanged", shown);
     }
     Json map;

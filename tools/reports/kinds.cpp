@@ -47,9 +47,14 @@ std::string kind_text(const CheckReport& report) {
     const std::string_view y = has_normals && report.y.y ? name_of(kYAxisNames, *report.y.y) : kNothing;
     const std::string confidence =
         report.kind == PictureKind::unknown ? std::string(kNothing) : fmt::format("{:.2f}", report.kind_confidence);
+    const std::string format = report.error ? std::string(kNothing) : std::string(name_of(kFormatNames, report.format));
+    const std::string extent =
+        report.error ? std::string(kNothing) : fmt::format("{}x{}", report.extent.width, report.extent.height);
+    const std::string levels = report.error ? std::string(kNothing) : std::to_string(report.levels);
     const std::string why = report.error ? ": " + report.error->reason : std::string();
-    return fmt::format("{:<12}  {:<7}  {:<4}  {:<4}  {}{}\n", name_of(kPictureKindNames, report.kind), layout, y,
-                       confidence, printable(title_of(report)), printable(why));
+    return fmt::format("{:<12}  {:<7}  {:<4}  {:<4}  {:<10}  {:<9}  {:>2}  {}{}\n",
+                       name_of(kPictureKindNames, report.kind), layout, y, confidence, format, extent, levels,
+                       printable(title_of(report)), printable(why));
 }
 
 void KindTotals::add(const CheckReport& report) {

@@ -180,6 +180,7 @@ std::string Recipe::output_name(const std::string& input, std::size_t index) con
     const OutputOptions options = output.last.converter->output_for_task();
     options.fill(fields);
     if (!options.format && output.name.uses("format")) {
+        options.check_knows_format();
         const Task task = output.last.converter->task_for(input, output.name.expand(fields));
         fields.format = name_of(kEncodingNames, default_encoding(task.container));
     }

@@ -178,9 +178,10 @@ struct BakeFileReport {
                                                        Container container, const BakeFileOptions& options = {},
                                                        const Execution& execution = {});
 
-// A roughness map written beside the normal map: build_roughness_chain() of the base level, with the same number of
-// levels (one, if the file holds one), write_texture(). The format is one of pack_roughness(); BC5 or EAC RG11; or one
-// of two to four channels of 8 or 16 bits or floats, without signs. ASTC holds roughness in R, G and B.
+// A roughness map written beside the normal map: build_roughness_chain() of the base level with the levels of `mip`
+// (one, if the file holds one; however many the file of normals holds), write_texture(). The format is one of
+// pack_roughness(); BC5 or EAC RG11; or one of two to four channels of 8 or 16 bits or floats, without signs. ASTC
+// holds roughness in R, G and B.
 struct RoughnessFile {
     std::string output;
     LevelNames level_names;  // as in BakeFileOptions
@@ -236,6 +237,7 @@ struct PackFileReport {
     int levels = 1;
     int left_out = 0;       // larger levels, which max_side leaves out
     std::size_t bytes = 0;  // of the output; the sum over all its files
+    int roughness_levels = 0;
     std::size_t roughness_bytes = 0;
     Format roughness_format = Format::bc4_unorm;  // if a roughness file was written
     PackOptions pack;

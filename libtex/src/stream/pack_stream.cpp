@@ -57,7 +57,8 @@ private:
     Result<void> open_targets();
     Result<void> pack_level(int level, const Execution& execution);
     [[nodiscard]] int roughness_levels() const {
-        return holds_levels(options_.roughness->container, options_.roughness->level_names) ? report_.levels : 1;
+        const RoughnessFile& file = *options_.roughness;
+        return holds_levels(file.container, file.level_names) ? levels_to_build(*mip_, extent(first_)) : 1;
     }
     [[nodiscard]] Extent extent(int level) const { return map_.map().extent(level); }
     [[nodiscard]] MadeLevels made_levels(int level, int count) const {
@@ -298,6 +299,7 @@ Result<PackFileReport> PackRun::run() {
     }
     if (const Result<void> committed = targets_.commit(); !committed) return committed.error();
     report_.bytes = targets_.bytes(Content::normals);
+    if (options_.roughness) report_.roughness_levels = roughness_levels();
     report_.roughness_bytes = targets_.bytes(Content::roughness);
     report_.rdo = targets_.rdo();
     return report_;
