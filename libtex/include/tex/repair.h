@@ -123,7 +123,9 @@ struct RepairStep {
     std::optional<Region> part = {};         // of invert_part
     std::optional<ToneCurve> tone = {};      // of undo_tone
     std::optional<ChannelTones> tones = {};  // of undo_tone, instead of `tone`: of each channel by itself
-    double degrees = 0.0;                    // the mean angle by which it changes the normals of the base level
+    // The mean angle by which it changes the normals of the base level; in maps of 8 Mtexels or more, of evenly spread
+    // bands of rows.
+    double degrees = 0.0;
 };
 
 // "exchange R and B", "decode with the sRGB curve".
