@@ -121,7 +121,7 @@ double psnr_of(double error) { return 10 * std::log10(255 * 255 / error); }
 
 // The limits in decibels are what was measured, less a little.
 TEST(EncodeUastcColors, MoreEffortComesNearerAndBeatsAPlainFit) {
-    const struct { double grain, limits[3]; } cases[] = {{0.02, {44.0, 45.0, 45.3}}, {0.3, {37.0, 37.7, 38.0}}};
+    const struct { double grain, limits[3]; } cases[] = {{0.02, {42.5, 43.4, 44.3}}, {0.3, {36.0, 36.7, 36.9}}};
     for (const auto& [grain, limits] : cases) {
         const OrmMap map = orm_map({131, 62}, grain);
         double before = plain_error(map);
@@ -222,13 +222,13 @@ TEST(EncodeUastcColors, ABlockDependsOnItsTexelsAloneAndBrokenValuesAreNoCrash) 
         broken[13] = std::numeric_limits<float>::infinity();
         std::uint8_t codes[4][16];
         decode_uastc(color_blocks(effort, broken, {4, 4}).data(), codes);
-        EXPECT_LE(codes[1][2], 8);
-        EXPECT_GE(codes[1][4], 247);
+        EXPECT_LE(codes[1][2], 20);
+        EXPECT_GE(codes[1][4], 235);
     }
 }
 
-// What a GPU reads: ASTC and BC7 lose little, BC1 and ETC1 are coarser. The limits are what was measured, less a
-// little.
+// What a GPU reads: ASTC and BC7 lose little; BC1 has four colours, and ETC1 four greys on one of two. The limits are
+// what was measured, less a little.
 TEST(EncodeUastcColors, HintsSuitTranscoders) {
     const OrmMap map = orm_map({128, 64}, 0.05);
     for (const Effort effort : kColorEfforts) {
@@ -237,7 +237,7 @@ TEST(EncodeUastcColors, HintsSuitTranscoders) {
         texture.swizzle = {Component::other, Component::other, Component::other, Component::one};
         texture.levels.push_back({map.extent, color_blocks(effort, map.rgb, map.extent)});
         const std::pair<GpuFormat, double> limits[] = {
-            {GpuFormat::astc, 41.0}, {GpuFormat::bc7, 40.0}, {GpuFormat::bc1, 30.0}, {GpuFormat::etc1, 26.0}};
+            {GpuFormat::astc, 41.0}, {GpuFormat::bc7, 40.0}, {GpuFormat::bc1, 28.8}, {GpuFormat::etc1, 19.5}};
         for (const auto& [format, limit] : limits) {
             const auto shown = transcode(texture, format);
             ASSERT_TRUE(shown) << shown.error().message();
