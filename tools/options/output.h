@@ -61,6 +61,9 @@ struct OutputOptions {
     // The job's write options, with the user's choices.
     [[nodiscard]] WriteOptions write_options(const Job& job) const;
 
+    // How the levels of a file of this format are compressed: unless the user says it, blocks of UASTC are.
+    [[nodiscard]] int zstd_for(Format stored) const;
+
     // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);
 
