@@ -76,7 +76,7 @@ double color_error(const std::vector<std::byte>& blocks, const OrmMap& map) {
     return sum / (3.0 * map.extent.width * map.extent.height);
 }
 
-// That of a plain encoder: 16 even steps between the texels that are farthest apart, where nothing is rounded.
+// What a plain encoder reaches: 16 even steps between the texels that are farthest apart, where nothing is rounded.
 double plain_error(const OrmMap& map) {
     double sum = 0;
     for (int top = 0; top < map.extent.height; top += 4) {

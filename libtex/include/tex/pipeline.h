@@ -179,9 +179,8 @@ struct BakeFileReport {
                                                        const Execution& execution = {});
 
 // A roughness map written beside the normal map: build_roughness_chain() of the base level, with the same number of
-// levels (one, if the file holds one), write_texture(). The format is one of pack_roughness(); BC5 or EAC RG11; or one
-// of two to four channels of 8 or 16 bits or floats, without signs. ASTC holds the first channel in R, G and B; UASTC
-// has three channels of their own, and an alpha of 1.
+// levels (one, if the file holds one), write_texture(). The format is one of pack_roughness(), where ASTC has the first
+// channel in R, G and B, and UASTC A = 1; BC5 or EAC RG11; or two to four channels of 8 or 16 bits or floats, unsigned.
 struct RoughnessFile {
     std::string output;
     LevelNames level_names;  // as in BakeFileOptions

@@ -29,7 +29,7 @@ struct ColorRanges {
     }
 };
 
-// Of active channels, as decoders use them: 2^14 is a code.
+// Endpoints of active channels, as decoders use them: 2^14 is a code.
 struct ColorEnds {
     float begin[3] = {}, step[3] = {};
 
