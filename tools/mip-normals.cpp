@@ -100,7 +100,10 @@ Result<void> MipNormals::check(const std::vector<cli::Task>& tasks) {
 PackFileOptions MipNormals::options(cli::Job& job) const {
     PackFileOptions options;
     options.mip = mips_.options(mips_.levels.value_or(0), wrap_);
-    if (roughness_.is_given()) options.roughness = roughness_.file(job, output.effort);
+    if (!roughness_.is_given()) return options;
+    options.roughness = roughness_.file(job, output.effort);
+    if (options.roughness->format == Format::uastc_4x4_unorm)
+        options.roughness->zstd = output.zstd_for(*options.roughness->format);
     return options;
 }
 

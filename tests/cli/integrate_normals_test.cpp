@@ -193,7 +193,8 @@ TEST_F(IntegrateNormals, LevelsAreIntegratedOneByOne) {
     const auto report = report_of({"n.ktx2", "--level", "all", "--name", "h{level}.exr", "--uv-height", "0.05"});
     EXPECT_EQ(report["levels"], 8);
     EXPECT_EQ(report["output"].size(), 8u);
-    const Ran said = run(scratch_, "integrate-normals", {"n.ktx2", "--level", "all", "-o", "g{level}.exr", "--no-sync"});
+    const Ran said =
+        run(scratch_, "integrate-normals", {"n.ktx2", "--level", "all", "-o", "g{level}.exr", "--no-sync"});
     EXPECT_EQ(said.out.rfind("g{level}.exr: bake-normals", 0), 0u) << said.out;
     EXPECT_EQ(heights_of("h7.exr").extent(), (Extent{1, 1}));
     EXPECT_EQ(heights_of("h0.exr").extent(), (Extent{128, 128}));

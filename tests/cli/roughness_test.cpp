@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -146,8 +148,10 @@ TEST_F(RoughnessOut, GoesWhereTheEngineReadsIt) {
         {"", "r.dds", Format::bc5_unorm, 0.25, 0.25, -1, -1},
         {"", "r.png", Format::r8_unorm, 0.25, -1, -1, -1},
         {"gltf", "r.png", Format::rgb8_unorm, 1, 0.25, 1, -1},
-        {"gltf", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
-        {"gltf-ktx2", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
+        {"gltf", "r.ktx2", Format::uastc_4x4_unorm, 1, 0.25, 1, 1},
+        {"gltf-ktx2", "r.ktx2", Format::uastc_4x4_unorm, 1, 0.25, 1, 1},
+        {"babylon", "r.ktx2", Format::uastc_4x4_unorm, 0.25, 0.25, 0.25, 1},
+        {"three", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
         {"three", "r.exr", Format::rgb16_float, 1, 0.25, 1, -1},
         {"three-packed", "r.ktx2", Format::bc5_unorm, 1, 0.25, -1, -1},
         {"godot", "r.tif", Format::rgb16_unorm, 1, 0.25, 1, -1},
@@ -165,9 +169,8 @@ TEST_F(RoughnessOut, GoesWhereTheEngineReadsIt) {
         if (*each.engine != '\0') arguments.insert(arguments.end(), {"--for", each.engine, "--format", "bc5"});
         const Ran ran = go("mip-normals", arguments);
         ASSERT_EQ(ran.code, 0) << ran.err;
-        EXPECT_EQ(ran.err.find("red is 0, which unity reads as no metal") != std::string::npos, each.alpha > 0.0);
-        EXPECT_EQ(ran.err.find("glTF models hold KTX2 of Basis Universal alone, not of bc5") != std::string::npos,
-                  std::string(each.engine).starts_with("gltf") && each.file == "r.ktx2");
+        EXPECT_EQ(ran.err.find("red is 0, which unity reads as no metal") != std::string::npos, each.red == 0.0);
+        EXPECT_EQ(ran.err.find("glTF models hold KTX2"), std::string::npos);
         EXPECT_EQ(texture(each.file).format, each.format);
         EXPECT_NEAR(mean(each.file, 0, 0), each.red, 0.003);
         EXPECT_NEAR(mean(each.file, 0, 1), each.green, 0.003);
@@ -184,6 +187,54 @@ TEST_F(RoughnessOut, GoesWhereTheEngineReadsIt) {
     does("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--for", "three", "--format", "bc5",
                          "--roughness-in", "0.25", "--roughness-out", "a.ktx2", "--roughness-format", "astc-6x6"});
     EXPECT_NEAR(mean("a.ktx2", 0, 1), 0.25, 0.003) << "luminance is in green, too";
+    const Ran ran = go("mip-normals", {"n.png", "-o", "n.dds", "--effort", "fast", "--for", "gltf", "--format", "bc5",
+                                       "--roughness-out", "b.ktx2", "--roughness-format", "bc5"});
+    EXPECT_NE(ran.err.find("glTF models hold KTX2 of Basis Universal alone, not of bc5"), std::string::npos) << ran.err;
+}
+
+// What KHR_texture_basisu allows: RGB of UASTC, linear, without a swizzle, and all levels.
+TEST_F(RoughnessOut, IsUastcInModelsOfGltf) {
+    const Ran ran = go("mip-normals", {"n.png", "-o", "n.ktx2", "--for", "gltf-ktx2", "--roughness-in", "0.25",
+                                       "--roughness-out", "r.ktx2"});
+    EXPECT_EQ(ran.code, 0) << ran.err;
+    EXPECT_EQ(without_notes(ran.err), "");
+    const Texture made = texture("r.ktx2");
+    ASSERT_EQ(made.format, Format::uastc_4x4_unorm);
+    EXPECT_EQ(made.levels.size(), texture("n.ktx2").levels.size());
+    EXPECT_FALSE(made.srgb);
+    for (int level = 0; level < 5; ++level) {
+        const auto image = decode(made, level);
+        ASSERT_TRUE(image);
+        for (int j = 0; j < image->extent().height; ++j) {
+            for (int i = 0; i < image->extent().width; ++i)
+                ASSERT_TRUE(image->planes[0].at(i, j) == 1.0f && image->planes[2].at(i, j) == 1.0f);
+        }
+        if (level > 0) EXPECT_GT(mean("r.ktx2", level, 1), mean("r.ktx2", level - 1, 1)) << level;
+    }
+    const std::string bytes = scratch_.read("r.ktx2");
+    const auto number = [&](std::size_t at) {
+        std::uint32_t value = 0;
+        for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+        return value;
+    };
+    EXPECT_EQ(number(44), 2u) << "Zstandard, as the normals";
+    EXPECT_EQ(number(number(48) + 12), 166u | 1u << 16) << "UASTC, and a linear transfer function";
+    EXPECT_EQ(number(number(48) + 28), 127u << 16) << "KHR_DF_CHANNEL_UASTC_RGB";
+    for (const char* key : {"KTXswizzle", "libtex.normal"}) EXPECT_EQ(bytes.find(key), std::string::npos) << key;
+    does("unpack-normals", {"r.ktx2", "-o", "back.png", "--level", "0"});
+    EXPECT_EQ(run(scratch_, "check-normals", {"r.ktx2"}).err, "");
+    // The user may say otherwise; UASTC is compressed beside normals that are not.
+    does("mip-normals", {"n.png", "-o", "n.ktx2", "--format", "bc5", "--effort", "fast", "--roughness-out", "u.ktx2",
+                         "--roughness-format", "uastc"});
+    EXPECT_EQ(scratch_.read("u.ktx2")[44], 2);
+    EXPECT_EQ(scratch_.read("n.ktx2")[44], 0);
+    does("mip-normals", {"n.png", "-o", "n.ktx2", "--format", "bc5", "--effort", "fast", "--roughness-out", "u.ktx2",
+                         "--roughness-format", "uastc", "--supercompress", "none"});
+    EXPECT_EQ(scratch_.read("u.ktx2")[44], 0);
+    before_ = scratch_.list();
+    refuses({"--for", "unity", "--format", "bc5", "--roughness-out", "x.ktx2", "--roughness-format", "uastc"}, 2,
+            "--roughness-format uastc has no channel A of its own, which unity reads");
+    refuses({"--roughness-out", "x.dds", "--roughness-format", "uastc"}, 2, "cannot hold roughness as uastc");
 }
 
 class RoughnessInto : public RoughnessOut {
@@ -232,6 +283,31 @@ TEST_F(RoughnessInto, MakesATextureWithWhatIsKept) {
         for (const std::size_t c : {std::size_t{0}, std::size_t{2}})
             EXPECT_NEAR(mean("orm.dds", k, c), mean("orm.png", 0, c), 0.004) << k;
     }
+}
+
+TEST_F(RoughnessInto, MakesUastcForGltf) {
+    does("mip-normals", {"n.png", "-o", "n.ktx2", "--for", "gltf-ktx2", "--roughness-into", "orm.png:g",
+                         "--roughness-out", "orm.ktx2"});
+    does("mip-normals",
+         {"n.png", "-o", "n.dds", "--effort", "fast", "--roughness-into", "orm.png:g", "--roughness-out", "orm.dds"});
+    ASSERT_EQ(texture("orm.ktx2").format, Format::uastc_4x4_unorm);
+    for (int k = 0; k < 10; ++k) {
+        const Image made = level("orm.ktx2", k), wanted = level("orm.dds", k);
+        double sum = 0.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int j = 0; j < made.extent().height; ++j) {
+                for (int i = 0; i < made.extent().width; ++i) {
+                    const double off =
+                        static_cast<double>(made.planes[c].at(i, j)) - static_cast<double>(wanted.planes[c].at(i, j));
+                    sum += off * off;
+                }
+            }
+        }
+        EXPECT_GT(-10 * std::log10(sum / (3.0 * static_cast<double>(made.extent().texels())) + 1e-9), 30) << k;
+    }
+    before_ = scratch_.list();
+    refuses({"--roughness-into", "orm.png:a", "--roughness-out", "x.ktx2", "--roughness-format", "uastc"}, 2,
+            "--roughness-format uastc has no channel A of its own, into which it goes");
 }
 
 TEST_F(RoughnessInto, ReplacesATextureWhole) {

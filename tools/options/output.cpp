@@ -30,10 +30,6 @@ std::string known_extensions() {
     return join(names);
 }
 
-bool is_basis(std::optional<Encoding> encoding) {
-    return encoding && encoding_info(*encoding).format == Format::uastc_4x4_unorm;
-}
-
 std::string encodings_in(Container container) {
     std::vector<std::string> names;
     for (const Named<Encoding>& row : kEncodingNames) {
@@ -220,11 +216,15 @@ void OutputOptions::check_holds(const std::string& output, Container container, 
                                  encodings_in(container), name_of(kEncodingNames, encoding), containers_for(encoding)));
 }
 
+int OutputOptions::zstd_for(Format stored) const {
+    return zstd.value_or(stored == Format::uastc_4x4_unorm ? kDefaultZstd : 0);
+}
+
 WriteOptions OutputOptions::write_options(const Job& job) const {
     WriteOptions write = job.write_options;
     write.dds_header = dds_header;
     write.dds_mark = dds_mark;
-    write.zstd = zstd.value_or(is_basis(format) ? kDefaultZstd : write.zstd);
+    write.zstd = format ? zstd_for(encoding_info(*format).format) : zstd.value_or(write.zstd);
     write.jpeg_quality = quality.value_or(write.jpeg_quality);
     return write;
 }

@@ -64,6 +64,8 @@ struct OutputOptions {
 
     // For names with {format}: throws UsageError with --format keep, which is known only once an input is read.
     void check_knows_format() const;
+    // How the levels of a file of this format are compressed: unless the user says it, blocks of UASTC are.
+    [[nodiscard]] int zstd_for(Format stored) const;
 
     // Throws UsageError if the container cannot hold `encoding`.
     static void check_holds(const std::string& output, Container container, Encoding encoding);

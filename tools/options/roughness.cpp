@@ -51,10 +51,22 @@ constexpr RoughnessParts kSmoothness = {RoughnessPart::zero, RoughnessPart::one,
 // Whether R, G and B are the same: in ASTC, and in pictures of one channel, except EXR, which is read as red.
 bool holds_luminance(Format format) {
     const FormatInfo info = format_info(format);
-    return info.has_blocks() && info.channels == 4;
+    return info.has_blocks() && info.channels == 4 && format != Format::uastc_4x4_unorm;
 }
 bool is_grey(Container container, Format format) {
     return format_info(format).channels == 1 && !can_hold_blocks(container) && container != Container::exr;
+}
+
+// The channels that differ: UASTC has no alpha here.
+int own_channels(Format format) {
+    return holds_luminance(format) ? 0 : format == Format::uastc_4x4_unorm ? 3 : format_info(format).channels;
+}
+
+// Whether the engine loads KTX2 of Basis Universal alone.
+bool reads_basis(const Engine* engine) {
+    if (engine == nullptr) return false;
+    const bool is_alone = engine->in_ktx2.size() == 1 && engine->in_ktx2.front() == Encoding::uastc;
+    return is_alone || std::string_view(engine->name).starts_with("gltf");
 }
 
 // The texture into which roughness is written, if it has that channel.
@@ -98,7 +110,8 @@ void RoughnessOptions::add(Command& command, const FileOptions& files) {
     input.completes = Completes::files;
     command.choice(model_, "--roughness-model", "M", kRoughnessModelNames, "how lost variance becomes roughness");
     command.choice(format_, "--roughness-format", "F", kRoughnessFormatNames, "how roughness is stored").preset =
-        "by file type and --for: bc5 in dds, ktx2; astc-4x4 in astc; r16 in tiff; half in exr; else r8";
+        "by file type and --for: bc5 in dds, ktx2; uastc in ktx2 for glTF; astc-4x4 in astc; r16 in tiff; half in exr; "
+        "else r8";
     command.check([this, &command] {
         const auto idle = command.given_of({"--roughness-in", "--roughness-model", "--roughness-format"});
         if (command.given(kOption) && output_.empty()) throw UsageError(kOption, "needs a value that is not empty");
@@ -182,8 +195,13 @@ RoughnessParts RoughnessOptions::parts_for(const Task& task) const {
 
 std::optional<Format> RoughnessOptions::format_in(Container container, const Task& task) const {
     if (format_) return format_;
-    if (!into_.file.empty()) return std::nullopt;
     const RoughnessUse use = use_of(task);
+    const bool is_basis = container == Container::ktx2 && use != RoughnessUse::smoothness && reads_basis(task.engine);
+    if (!into_.file.empty()) {
+        const bool is_made = is_basis && !is_in_place() && into_.channel != HeightChannel::a;
+        return is_made ? std::optional(Format::uastc_4x4_unorm) : std::nullopt;
+    }
+    if (is_basis) return Format::uastc_4x4_unorm;
     const Format normals = encoding_info(default_encoding(container)).format;
     if (container == Container::astc) return normals;
     const FormatInfo info = format_info(normals);
@@ -214,7 +232,7 @@ void RoughnessOptions::check_format(const Task& task, const std::string& path, C
     if (!is_kept && use == RoughnessUse::any) return;
     if (!is_kept && use == RoughnessUse::green && (holds_luminance(*format) || is_grey(container, *format))) return;
     const std::size_t needed = is_kept ? place_of(into_.channel) : use == RoughnessUse::green ? 1 : 3;
-    if (static_cast<int>(needed) < format_info(*format).channels && !holds_luminance(*format)) return;
+    if (static_cast<int>(needed) < own_channels(*format)) return;
     throw UsageError(
         printable(path),
         fmt::format("--roughness-format {} has no channel {} of its own, {}", name, "RGBA"[needed],
@@ -297,7 +315,7 @@ void RoughnessOptions::report(Job& job, const PackFileReport& packed) const {
     }
     const Engine* const engine = job.task.engine;
     if (engine != nullptr && std::string_view(engine->name).starts_with("gltf") &&
-        container_for(path) == Container::ktx2 && format_info(packed.roughness_format).has_blocks()) {
+        container_for(path) == Container::ktx2 && packed.roughness_format != Format::uastc_4x4_unorm) {
         job.warn(
             fmt::format("glTF models hold KTX2 of Basis Universal alone, not of {}: this file is for programs that "
                         "load it by itself",

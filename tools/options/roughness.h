@@ -32,6 +32,7 @@ inline constexpr Named<Format> kRoughnessFormatNames[] = {
     {Format::astc_8x5_unorm, "astc-8x5", "ASTC, as luminance"},
     {Format::astc_8x6_unorm, "astc-8x6", "ASTC, as luminance"},
     {Format::astc_8x8_unorm, "astc-8x8", "ASTC, as luminance"},
+    {Format::uastc_4x4_unorm, "uastc", "UASTC of Basis Universal: R, G and B"},
     {Format::r8_unorm, "r8", "8 bits"},
     {Format::rgb8_unorm, "rgb8", "3 x 8 bits"},
     {Format::rgba8_unorm, "rgba8", "4 x 8 bits"},

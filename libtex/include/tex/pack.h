@@ -278,8 +278,9 @@ using RoughnessParts = std::array<RoughnessPart, 4>;  // of R, G, B and A, as fa
 inline constexpr Swizzle kRoughnessSwizzle = {Component::other, Component::zero, Component::zero, Component::one};
 
 // Packs a chain as a texture of one channel: bc4_unorm or eac_r11_unorm (with the guarantees of pack()), the formats of
-// ASTC from 4x4 to 8x8 (as luminance: R = G = B), r8_unorm, r16_unorm (codes rounded as in format.h, of the value
-// instead of (n + 1) / 2), r16_float or r32_float. Other formats give bad_option.
+// ASTC from 4x4 to 8x8 (as luminance: R = G = B), uastc_4x4_unorm (R = G = B, with the least squared error of codes;
+// any KTX2 loader of Basis Universal makes of it what its GPU reads), r8_unorm, r16_unorm (codes rounded as in
+// format.h, of the value instead of (n + 1) / 2), r16_float or r32_float. Other formats give bad_option.
 //
 // Errors: bad_option, out_of_memory, cancelled.
 // The same bytes for every number of threads, processor and compiler.

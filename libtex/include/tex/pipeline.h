@@ -180,14 +180,15 @@ struct BakeFileReport {
 
 // A roughness map written beside the normal map: build_roughness_chain() of the base level with the levels of `mip`
 // (one, if the file holds one; however many the file of normals holds), write_texture(). The format is one of
-// pack_roughness(); BC5 or EAC RG11; or one of two to four channels of 8 or 16 bits or floats, without signs. ASTC
-// holds roughness in R, G and B.
+// pack_roughness(), where ASTC has the first channel in R, G and B, and UASTC A = 1; BC5 or EAC RG11; or two to four
+// channels of 8 or 16 bits or floats, unsigned.
 struct RoughnessFile {
     std::string output;
     LevelNames level_names;  // as in BakeFileOptions
     Container container = Container::dds;
     std::optional<Format> format = Format::bc4_unorm;
     Effort effort = Effort::normal;
+    std::optional<int> zstd;  // WriteOptions::zstd of this file, if it holds KTX2; none: as the normals' file
     RoughnessModel model = RoughnessModel::toksvig;
     float own = 0.0f;                           // the material's roughness, the same everywhere
     std::function<Result<Plane<float>>()> map;  // if set, returns the roughness map, which replaces `own`

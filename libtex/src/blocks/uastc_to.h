@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "blocks/uastc_write.h"
+
 namespace tex::inline v1 {
 
 // A block of BC7, of 16 bytes: the mode that has as many subsets and planes.
@@ -19,6 +21,10 @@ void uastc_to_bc1(const std::byte* block, std::byte* out);
 
 // The texels of a block of ETC1: base colours from the means of halves and a bias, and the tables that the hints name.
 void uastc_to_etc1(const std::byte* block, std::uint8_t rgb[16][3]);
+
+// The base colours of both halves in 8 bits, for the codes of R, G and B of a block that is not of one colour. Modes 10
+// to 12 have no bias.
+void uastc_etc1_bases(const std::uint8_t codes[][16], const UastcHints& hints, bool has_bias, int bases[2][3]);
 
 // What the block of ASTC with the same numbers decodes to, in 16 bits.
 void uastc_to_astc(const std::byte* block, std::uint16_t rgba[16][4]);

@@ -57,10 +57,10 @@ struct Etc1Half {
 
 int etc1_half_of(int texel, bool flip) { return (flip ? texel / 4 : texel % 4) / 2; }
 
-void set_bases(const std::uint8_t codes[4][16], const UastcParts& parts, Etc1Half halves[2]) {
-    const UastcHints& hints = parts.hints;
+}  // namespace
+
+void uastc_etc1_bases(const std::uint8_t codes[][16], const UastcHints& hints, bool has_bias, int bases[2][3]) {
     const int limit = hints.diff ? 31 : 15;
-    const bool has_bias = parts.mode < 10 || parts.mode > 12;
     for (int c = 0; c < 3; ++c) {
         int base[2];
         for (int half = 0; half < 2; ++half) {
@@ -70,12 +70,9 @@ void set_bases(const std::uint8_t codes[4][16], const UastcParts& parts, Etc1Hal
             if (has_bias) base[half] = with_bias(base[half], bias_of(hints.bias, half, c), limit);
         }
         if (hints.diff) base[1] = base[0] + std::clamp(base[1] - base[0], -4, 3);
-        for (int half = 0; half < 2; ++half) halves[half].base[c] = widened_base(base[half], hints.diff);
+        for (int half = 0; half < 2; ++half) bases[half][c] = widened_base(base[half], hints.diff);
     }
-    for (int half = 0; half < 2; ++half) halves[half].table = hints.table[half];
 }
-
-}  // namespace
 
 void uastc_to_etc1(const std::byte* block, std::uint8_t rgb[16][3]) {
     std::memset(rgb, 0, 16 * 3);
@@ -100,7 +97,12 @@ void uastc_to_etc1(const std::byte* block, std::uint8_t rgb[16][3]) {
     }
     std::uint8_t codes[4][16];
     decode_uastc(block, codes);
-    set_bases(codes, *parts, halves);
+    int bases[2][3];
+    uastc_etc1_bases(codes, parts->hints, parts->mode < 10 || parts->mode > 12, bases);
+    for (int half = 0; half < 2; ++half) {
+        std::copy_n(bases[half], 3, halves[half].base);
+        halves[half].table = parts->hints.table[half];
+    }
     constexpr int kLight[] = {54, 183, 19};
     int light[2][4] = {};
     for (int half = 0; half < 2; ++half) {

@@ -12,6 +12,7 @@
 #include "kernels/encode_astc.h"
 #include "kernels/encode_bc7.h"
 #include "kernels/encode_uastc.h"
+#include "kernels/encode_uastc_colors.h"
 #include "rows/decode_rows.h"
 #include "rows/rdo_rows.h"
 
@@ -57,7 +58,8 @@ constexpr WholeBlocks kUastcBlocks = {.values = 3,
                                       .is_prepared = [](Format, Effort) { return true; },
                                       .memory = uastc_memory,
                                       .rows_at_once = uastc_rows_at_once,
-                                      .read_entries = read_uastc_entries};
+                                      .read_entries = read_uastc_entries,
+                                      .encode_colors = encode_uastc_colors};
 
 constexpr WholeBlocks kUastcXyBlocks = [] {
     WholeBlocks blocks = kUastcBlocks;

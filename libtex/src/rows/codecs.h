@@ -20,8 +20,8 @@ namespace tex::inline v1 {
 
 class RdoTally;
 
-// Encodes blocks in which all components share what a block has: see kernels/encode_astc.h, encode_bc7.h and
-// encode_uastc.h.
+// Encodes blocks in which all components share what a block has: see kernels/encode_astc.h, encode_bc7.h,
+// encode_uastc.h and encode_uastc_colors.h.
 struct WholeBlocks {
     // How many a texel has: 2 are x and y; 3 are x, y and z; 4 are these and alpha (or, with x in alpha, 1).
     int values;
@@ -37,6 +37,8 @@ struct WholeBlocks {
     int (*rows_at_once)(Format format, int width);
     // What optimise_rgb_band() needs; null elsewhere.
     BlockEntries (*read_entries)(const std::byte* block) = nullptr;
+    // Encodes R, G and B that are no directions, from 0 to 1, with an alpha of 1; null if there is no such encoder.
+    void (*encode_colors)(Format format, Effort effort, const float* rgb, Extent extent, std::byte* blocks) = nullptr;
 };
 
 // What formats with the same kind of block have in common.

@@ -90,6 +90,24 @@ void pack_whole_blocks(const ChannelRow& rows, const FormatRow& format, Effort e
     format.codec->whole->encode_values(format.format, effort, values.data(), {rows.width(), end - begin}, out);
 }
 
+bool encodes_colors(const FormatRow& row) {
+    return row.codec->whole != nullptr && row.codec->whole->encode_colors != nullptr;
+}
+
+void pack_colors(const ChannelRow& rows, const FormatRow& format, Effort effort, int begin, int end, std::byte* out) {
+    constexpr std::size_t kColors = 3;
+    const auto width = static_cast<std::size_t>(rows.width());
+    std::vector<float> row(width), colors(kColors * width * static_cast<std::size_t>(end - begin));
+    float* to = colors.data();
+    for (int j = begin; j < end; ++j, to += kColors * width) {
+        for (std::size_t c = 0; c < kColors; ++c) {
+            rows.make(j, c, row.data());
+            for (std::size_t i = 0; i < width; ++i) to[kColors * i + c] = row[i];
+        }
+    }
+    format.codec->whole->encode_colors(format.format, effort, colors.data(), {rows.width(), end - begin}, out);
+}
+
 template <class Sample, class Convert>
 void pack_samples(const ChannelRow& rows, int channels, int begin, int end, Convert convert, std::byte* out) {
     const auto count = static_cast<std::size_t>(rows.width()), step = static_cast<std::size_t>(channels);
@@ -115,6 +133,7 @@ void pack(const ChannelRow& rows, Format format, Effort effort, int begin, int e
     const FormatRow& row = format_row(format);
     const auto& [sample, channels, bits, block, block_bytes] = row.info;
     if (encodes_values(row)) return pack_whole_blocks(rows, row, effort, begin, end, out);
+    if (encodes_colors(row)) return pack_colors(rows, row, effort, begin, end, out);
     if (row.codec->encode_halves != nullptr) return pack_halves(rows, row, effort, begin, end, out);
     if (sample == SampleKind::floating && bits == 16)
         return pack_samples<Imath::half>(
@@ -131,12 +150,13 @@ void pack(const ChannelRow& rows, Format format, Effort effort, int begin, int e
 bool holds_roughness(Format format) {
     const FormatRow& row = format_row(format);
     const bool has_halves = row.codec->encode_halves != nullptr && row.info.channels <= 2;
-    return row.info.sample != SampleKind::snorm && (!row.info.has_blocks() || has_halves || encodes_values(row));
+    return row.info.sample != SampleKind::snorm &&
+           (!row.info.has_blocks() || has_halves || encodes_values(row) || encodes_colors(row));
 }
 
 bool is_single_roughness(Format format) {
     const FormatRow& row = format_row(format);
-    return holds_roughness(format) && (row.info.channels == 1 || encodes_values(row));
+    return holds_roughness(format) && (row.info.channels == 1 || encodes_values(row) || encodes_colors(row));
 }
 
 void pack_roughness_rows(const Plane<float>& level, int height, Format format, Effort effort, int begin, int end,

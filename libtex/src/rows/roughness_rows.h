@@ -23,7 +23,7 @@ struct KeptChannels {
 // Whether a roughness file may have this format: one channel, or more of these.
 [[nodiscard]] bool holds_roughness(Format format);
 
-// Whether such a format holds one value a texel.
+// Whether such a format holds one value a texel, or the same one in R, G and B.
 [[nodiscard]] bool is_single_roughness(Format format);
 
 // Does what pack_rows() (pack_rows.h) does, for one channel. Precondition: is_single_roughness(format).

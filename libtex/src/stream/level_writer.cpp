@@ -18,6 +18,7 @@
 #include "formats/file_layout.h"
 #include "formats/file_types.h"
 #include "formats/reader/reader.h"
+#include "rows/codecs.h"
 #include "rows/pack_rows.h"
 #include "stream/texture_writer.h"
 #include "threads/no_throw.h"
@@ -190,7 +191,8 @@ LevelPacking packing_of(const ExtraFile& options, Extra extra, Extent extent, in
 LevelPacking packing_of(const RoughnessFile& options, const KeptChannels* kept, Extent extent, int levels) {
     TextureHead head{*options.format, extent, levels};
     head.swizzle = kRoughnessSwizzle;
-    const int channels = format_info(*options.format).channels;
+    // What UASTC holds here has no alpha, and its descriptor says so.
+    const int channels = has_basis_blocks(*options.format) ? 3 : format_info(*options.format).channels;
     std::fill_n(head.swizzle.begin(), channels, Component::other);
     const auto pack = [parts = options.parts, kept, format = *options.format, effort = options.effort](
                           const LevelRows& rows, std::byte* out, std::byte*) {

@@ -117,7 +117,7 @@ Result<void> Targets::open(const std::vector<FileTarget>& targets, ExtraSet extr
 Result<void> Targets::open(const RoughnessFile& file, const KeptChannels* kept, const WriteOptions& write,
                            Extent extent, int levels) {
     WriteOptions options = write;
-    if (!can_compress(file.container)) options.zstd = 0;
+    options.zstd = can_compress(file.container) ? file.zstd.value_or(write.zstd) : 0;
     return add(Content::roughness, file.output, file.level_names, file.container,
                packing_of(file, kept, extent, levels), options, Opened::late);
 }
