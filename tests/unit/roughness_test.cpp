@@ -278,8 +278,8 @@ TEST(Roughness, PacksIntoEveryFormatOfOneChannel) {
     const std::pair<Format, double> bounds[] = {
         {Format::r8_unorm, 0.5 / 255 + 1e-7}, {Format::r16_unorm, 0.5 / 65535 + 1e-7},
         {Format::r16_float, 1.0 / 4096},      {Format::r32_float, 0.0},
-        {Format::astc_4x4_unorm, 1.0 / 40},   {Format::uastc_4x4_unorm, 1.0 / 40},
-        {Format::bc4_unorm, 1.0 / 10}};  // noise from 0 to 1: steps of sevenths
+        {Format::astc_4x4_unorm, 1.0 / 40},   {Format::uastc_4x4_unorm, 1.0 / 29},  // noise from 0 to 1: fifteenths,
+        {Format::bc4_unorm, 1.0 / 10}};                                             // and sevenths
     for (const auto& [format, bound] : bounds) {
         const auto texture = tex::pack_roughness(chain, format);
         ASSERT_TRUE(texture);
