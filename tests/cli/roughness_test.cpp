@@ -235,7 +235,7 @@ TEST_F(RoughnessOut, IsUastcInModelsOfGltf) {
     before_ = scratch_.list();
     refuses({"--for", "unity", "--format", "bc5", "--roughness-out", "x.ktx2", "--roughness-format", "uastc"}, 2,
             "--roughness-format uastc has no channel A of its own, which unity reads");
-    refuses({"--roughness-out", "x.dds", "--roughness-format", "uastc"}, 2, "cannot hold roughness as uastc");
+    refuses({"--roughness-out", "r.dds", "--roughness-format", "uastc"}, 2, "cannot hold roughness as uastc");
 }
 
 class RoughnessInto : public RoughnessOut {
