@@ -93,7 +93,7 @@ with_isal_in_c() {
     cp "$root"/include/*.h "$prefix/include/isa-l"
     printf '#include <isa-l/%s>\n' crc.h crc64.h igzip_lib.h >"$prefix/include/isa-l.h"
     printf '#define ISAL_%s\n' 'MAJOR_VERSION 2' 'MINOR_VERSION 30' 'PATCH_VERSION 0' >>"$prefix/include/isa-l.h"
-    compile_all libisal libisal.a -I"$root/include" -I"$root/igzip" -w -- \
+    compile_all libisal libisal.a -Os -I"$root/include" -I"$root/igzip" -w -- \
         "$root"/igzip/{igzip_inflate,igzip,hufftables_c}.c "$root"/igzip/adler32_base.c \
         "$root"/crc/{crc_base,crc_base_aliases}.c "$here/isal.c"
     pkgconfig libisal 2.30.0 isal
@@ -107,7 +107,7 @@ with_c_libraries() {
         "$root"/{adler32,crc32,deflate,inffast,inflate,inftrees,trees,zutil,compress,uncompr}.c
     root=$(source_of libdeflate)
     cp "$root/libdeflate.h" "$prefix/include"
-    compile_all libdeflate libdeflate.a -I"$root" -w -- "$root"/lib/{adler32,crc32,deflate_compress}.c \
+    compile_all libdeflate libdeflate.a -Os -I"$root" -w -- "$root"/lib/{adler32,crc32,deflate_compress}.c \
         "$root"/lib/{deflate_decompress,utils,zlib_compress,zlib_decompress}.c
     pkgconfig libdeflate 1.14 deflate
     root=$(source_of libzstd)
@@ -117,8 +117,10 @@ with_c_libraries() {
     sed -Ei '/^ZSTD_blockCompressor ZSTD_selectBlock/,/^}/ s/_(dictMatchState|dedicatedDictSearch)//' \
         "$root/lib/compress/zstd_compress.c"
     cp "$root/lib/zstd.h" "$root/lib/zstd_errors.h" "$prefix/include"
-    compile_all libzstd libzstd.a -DZSTD_DISABLE_ASM -DZSTD_LEGACY_SUPPORT=0 -w -- "$root"/lib/common/*.c \
-        "$root"/lib/compress/*.c "$root"/lib/decompress/*.c
+    # It has two decoders for the same data; these macros keep the smaller one.
+    compile_all libzstd libzstd.a -Os -DZSTD_DISABLE_ASM -DZSTD_LEGACY_SUPPORT=0 -DHUF_FORCE_DECOMPRESS_X1 \
+        -DZSTD_FORCE_DECOMPRESS_SEQUENCES_SHORT -w -- "$root"/lib/common/*.c "$root"/lib/compress/*.c \
+        "$root"/lib/decompress/*.c
     pkgconfig libzstd 1.5.4 zstd
 }
 
