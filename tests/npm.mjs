@@ -155,6 +155,23 @@ test('a word', () => refused('bad-option', "kernel: must be one of 'forward'", (
 test('a range', () => refused('bad-option', 'must be above 0 and at most 64', () => tex.bake(wave, { gaussian_sigma: 65 })));
 test('NaN', () => refused('bad-option', 'bumpiness: must be finite', () => tex.bake(wave, { bumpiness: NaN })));
 test('an unknown option', () => refused('bad-option', "unknown option 'kernle'", () => tex.bake(wave, { kernle: 'x' })));
+test('values of the wrong type', () => {
+  const texture = { ...tex.pack(tex.bake(wave), { encoding: 'rgba8' }) };
+  refused('bad-option', 'gaussian_sigma: expected a number', () => tex.bake(wave, { gaussian_sigma: '1' }));
+  refused('bad-option', 'texture.srgb: expected true or false', () => tex.check({ ...texture, srgb: 1 }));
+  refused('bad-option', 'texture.levels: expected a list', () => tex.check({ ...texture, levels: {} }));
+  refused('bad-option', 'layers: expected a list', () => tex.blend(tex.bake(wave), 'none'));
+  refused('bad-option', 'require: expected a string', () => tex.check(texture, { require: [1] }));
+  refused('bad-option', 'name: expected a string', () => tex.readTexture(new Uint8Array(4), 5));
+});
+test('the characters of JSON', () => {
+  for (const name of ['"\\/\b\f\n\r\t\u0001', 'ä€𝄞', '\ufffd'])
+    refused('bad-option', `unknown option '${name}'`, () => tex.bake(wave, { [name]: 1 }));
+  refused('bad-option', "unknown option '\ufffd'", () => tex.bake(wave, { '\ud834': 1 })); // half of a pair
+  let deep = 1;
+  for (let k = 0; k < 2000; ++k) deep = [deep];
+  refused('bad-option', 'options: nested too deeply', () => tex.bake(wave, { kernel: deep }));
+});
 test('too few samples', () => refused('bad-option', 'fewer samples', () => tex.bake({ ...wave, height: 5 })));
 test('heights that are not finite', () => {
   refused('bad-data', 'finite', () => tex.bake({ ...wave, data: new Float32Array(32).fill(Infinity) }));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <stdexcept>
 
 #include "values.h"
@@ -15,11 +16,17 @@ namespace {
 template <class T>
 T options_from(const Json& call) {
     T options;
-    if (!call.contains("options")) return options;
-    Reader reader(call["options"]);
+    const Json* const given = call.find("options");
+    if (given == nullptr) return options;
+    Reader reader(*given);
     each_field(options, reader);
     reader.finish();
     return options;
+}
+
+std::string file_name(const Json& call) {
+    const Json* const name = call.find("name");
+    return name != nullptr ? text_from(*name, "name") : std::string();
 }
 
 Json baked(const Json& call, Answer& answer) {
@@ -35,10 +42,10 @@ Json baked(const Json& call, Answer& answer) {
 
 Json heights(const Json& call, Answer& answer) {
     const auto options = options_from<HeightOptions>(call);
-    const Image image = sound(read_image(bytes_from(member(call, "bytes"), "bytes"), call.value("name", "")));
+    const Image image = sound(read_image(bytes_from(member(call, "bytes"), "bytes"), file_name(call)));
     const PictureHeights field = sound(height_field(image, options));
     Json result = answer.of(field.height);
-    result["bumpiness"] = {field.bumpiness_x, field.bumpiness_y};
+    result.set("bumpiness", Json::list({field.bumpiness_x, field.bumpiness_y}));
     return result;
 }
 
@@ -51,7 +58,7 @@ Json scaled(const Json& call, Answer& answer) {
     const auto options = options_from<Scaling>(call);
     const Json& given = member(call, "map");
     const MipChain chain = sound(scale(chain_from(given, "map"), options.scale, options.mode));
-    return given.is_array() ? answer.of(chain) : answer.of(chain.levels.front());
+    return given.is_list() ? answer.of(chain) : answer.of(chain.levels.front());
 }
 
 Json blended(const Json& call, Answer& answer) {
@@ -59,15 +66,14 @@ Json blended(const Json& call, Answer& answer) {
     constexpr std::int64_t kMostTexels = std::int64_t{1} << 27;  // sizes fit std::size_t, which has 32 bits
     if (options.extent.texels() > kMostTexels) fail("extent: more texels than fit memory", ErrorCode::out_of_memory);
     std::vector<Layer> layers;
-    for (const Json& given : member(call, "layers")) {
+    for (const Json& given : list_from(member(call, "layers"), "layers")) {
         const std::string name = "layers[" + std::to_string(layers.size()) + "]";
-        Json fields = given;
         Layer layer;
         layer.detail = chain_from(member(given, "detail"), name + ".detail");
-        if (given.contains("mask")) layer.mask = plane_from(given["mask"], name + ".mask");
-        fields.erase("detail");
-        fields.erase("mask");
-        Reader reader(fields);
+        if (const Json* const mask = given.find("mask")) layer.mask = plane_from(*mask, name + ".mask");
+        Reader reader(given);
+        reader.leave("detail");
+        reader.leave("mask");
         each_field(layer, reader);
         reader.finish();
         layers.push_back(std::move(layer));
@@ -86,7 +92,7 @@ Json unpacked(const Json& call, Answer& answer) {
 }
 
 Json read(const Json& call, Answer& answer) {
-    return answer.of(sound(read_texture(bytes_from(member(call, "bytes"), "bytes"), call.value("name", ""))));
+    return answer.of(sound(read_texture(bytes_from(member(call, "bytes"), "bytes"), file_name(call))));
 }
 
 Json encoded(const Json& call, Answer& answer) {
@@ -96,39 +102,43 @@ Json encoded(const Json& call, Answer& answer) {
 
 Json checked(const Json& call, Answer&) {
     CheckOptions options;
-    if (call.contains("options")) {
-        for (const auto& [key, value] : call["options"].items()) {
-            if (!value.is_array()) fail(key + ": expected a list of strings");
-            for (const Json& word : value) {
-                const auto text = word.get<std::string>();
-                if (key == "require") {
-                    sound_or_throw(add_requirement(options.require, text));
-                } else if (key == "enable") {
-                    options.enable.push_back(text);
-                } else if (key == "disable") {
-                    options.disable.push_back(text);
-                } else {
-                    fail("unknown option '" + key + "'");
-                }
+    const Json given = value_or_null(call, "options");
+    if (!given.is_null() && !given.is_object()) fail("options: expected an object");
+    for (std::size_t k = 0; k < given.keys().size(); ++k) {
+        const std::string& key = given.keys()[k];
+        const Json& value = given.elements()[k];
+        if (!value.is_list()) fail(key + ": expected a list of strings");
+        for (const Json& word : value.elements()) {
+            const std::string& text = text_from(word, key);
+            if (key == "require") {
+                sound_or_throw(add_requirement(options.require, text));
+            } else if (key == "enable") {
+                options.enable.push_back(text);
+            } else if (key == "disable") {
+                options.disable.push_back(text);
+            } else {
+                fail("unknown option '" + key + "'");
             }
         }
     }
-    const auto name = call.value("name", "");
-    const Texture texture = call.contains("bytes") ? sound(read_texture(bytes_from(call["bytes"], "bytes"), name))
-                                                   : texture_from(member(call, "texture"));
+    const std::string name = file_name(call);
+    const Json* const bytes = call.find("bytes");
+    const Texture texture = bytes != nullptr ? sound(read_texture(bytes_from(*bytes, "bytes"), name))
+                                             : texture_from(member(call, "texture"));
     const CheckReport report = sound(check(name, texture, options));
-    Json findings = Json::array();
+    Json findings = Json::list();
     for (const Finding& finding : report.findings) {
-        findings.push_back({{"id", finding.rule->id},
-                            {"name", finding.rule->name},
-                            {"severity", name_of(kSeverityNames, finding.severity)},
-                            {"message", finding.message},
-                            {"fix", finding.rule->fix},
-                            {"figure", finding.figure},
-                            {"unit", finding.unit},
-                            {"confidence", finding.confidence},
-                            {"level", finding.regions.empty() ? 0 : finding.regions.front().level}});
-        if (finding.has_texel) findings.back()["texel"] = {finding.column, finding.row};
+        Json found = {{"id", finding.rule->id},
+                      {"name", finding.rule->name},
+                      {"severity", name_of(kSeverityNames, finding.severity)},
+                      {"message", finding.message},
+                      {"fix", finding.rule->fix},
+                      {"figure", finding.figure},
+                      {"unit", finding.unit},
+                      {"confidence", finding.confidence},
+                      {"level", finding.regions.empty() ? 0 : finding.regions.front().level}};
+        if (finding.has_texel) found.set("texel", Json::list({finding.column, finding.row}));
+        findings.append(std::move(found));
     }
     return findings;
 }
@@ -181,9 +191,11 @@ Json error_of(const Error& error) {
     return {{"code", name_of(kErrorCodeNames, error.code)}, {"message", error.message()}};
 }
 
-Json answer_to(const Json& call, Answer& answer) {
+Json answer_to(const std::optional<Json>& parsed, Answer& answer) {
     try {
-        const std::string name = member(call, "verb").get<std::string>();
+        if (!parsed) fail("options: nested too deeply");
+        const Json& call = *parsed;
+        const std::string& name = text_from(member(call, "verb"), "verb");
         for (const Verb& verb : kVerbs) {
             if (name == verb.name) return {{"value", verb.run(call, answer)}};
         }
@@ -192,8 +204,6 @@ Json answer_to(const Json& call, Answer& answer) {
         return {{"error", error_of(failure.error)}};
     } catch (const std::bad_alloc&) {
     } catch (const std::length_error&) {
-    } catch (const Json::exception& wrong) {
-        return {{"error", error_of({ErrorCode::bad_option, {}, wrong.what()})}};
     }
     return {{"error", error_of({ErrorCode::out_of_memory, {}, "out of memory"})}};
 }
@@ -214,7 +224,7 @@ __attribute__((export_name("tex_call"))) const char* tex_call(const char* call) 
     using namespace tex::web;
     delete last;
     last = new Answer;
-    text = answer_to(Json::parse(call, nullptr, false), *last).dump(-1, ' ', false, Json::error_handler_t::replace);
+    text = answer_to(Json::parse(call), *last).dump();
     return text.c_str();
 }
 __attribute__((export_name("tex_done"))) void tex_done() {

@@ -10,8 +10,18 @@ namespace tex::web {
 
 void fail(const std::string& reason, ErrorCode code) { throw Failure{{code, {}, reason}}; }
 
+const std::string& text_from(const Json& given, const std::string& name) {
+    if (!given.is_string()) fail(name + ": expected a string");
+    return given.text();
+}
+
+const std::vector<Json>& list_from(const Json& given, const std::string& name) {
+    if (!given.is_list()) fail(name + ": expected a list");
+    return given.elements();
+}
+
 Swizzle swizzle_from(const Json& given, const std::string& name) {
-    const std::string text = given.is_string() ? given.get<std::string>() : std::string();
+    const std::string& text = given.text();
     if (const auto layout = find_by_name(kSwizzleNames, text)) return *layout;
     Swizzle swizzle{};
     bool sound = text.size() == swizzle.size();
@@ -25,14 +35,14 @@ Swizzle swizzle_from(const Json& given, const std::string& name) {
 }
 
 void Reader::finish() const {
-    for (const auto& [key, value] : options_.items()) {
+    for (const std::string& key : options_.keys()) {
         if (std::find(names_.begin(), names_.end(), key) == names_.end()) fail("unknown option '" + key + "'");
     }
 }
 
 double Reader::number(const char* name, const Json& given) {
     if (!given.is_number()) fail(std::string(name) + ": expected a number");
-    return given.get<double>();
+    return given.number();
 }
 
 int Reader::integer(const char* name, const Json& given) {

@@ -13,23 +13,23 @@
 #include <vector>
 
 #include <tex/tex.h>
-#include <nlohmann/json.hpp>
 
 #include "fields/bake_fields.h"
 #include "fields/blend_fields.h"
 #include "fields/height_fields.h"
 #include "fields/mip_fields.h"
 #include "fields/pack_fields.h"
+#include "json.h"
 
 namespace tex::web {
-
-using Json = nlohmann::ordered_json;
 
 // What a call throws, and nothing else: it becomes an exception of JavaScript.
 struct Failure {
     Error error;
 };
 [[noreturn]] void fail(const std::string& reason, ErrorCode code = ErrorCode::bad_option);
+const std::string& text_from(const Json& given, const std::string& name);
+const std::vector<Json>& list_from(const Json& given, const std::string& name);
 // A layout's name ("dxt5nm"), or what R, G, B and A hold ("1y1x").
 Swizzle swizzle_from(const Json& given, const std::string& name);
 
@@ -62,23 +62,25 @@ public:
     void operator()(const char* name, Axes<T> field, const Rest&... rest) {
         const Json* const given = find(name);
         if (given == nullptr) return;
-        const bool pair = given->is_array() && given->size() == 2;
-        if (given->is_array() && !pair) fail(std::string(name) + ": expected a value or a pair [x, y]");
-        one(name, pair ? (*given)[0] : *given, field.x, rest...);
-        one(name, pair ? (*given)[1] : *given, field.y, rest...);
+        const std::vector<Json>& both = given->elements();
+        const bool pair = given->is_list() && both.size() == 2;
+        if (given->is_list() && !pair) fail(std::string(name) + ": expected a value or a pair [x, y]");
+        one(name, pair ? both[0] : *given, field.x, rest...);
+        one(name, pair ? both[1] : *given, field.y, rest...);
     }
+    // A member that is no field.
+    void leave(const char* name) { names_.emplace_back(name); }
     void finish() const;
 
 private:
     const Json* find(const char* name) {
-        names_.emplace_back(name);
-        const auto found = options_.find(name);
-        return found == options_.end() ? nullptr : &*found;
+        leave(name);
+        return options_.find(name);
     }
     template <class E, std::size_t N>
     static E word(const char* name, const Json& given, const Named<E> (&words)[N]) {
         if (given.is_string()) {
-            if (const auto found = find_by_name(words, given.get<std::string>())) return *found;
+            if (const auto found = find_by_name(words, given.text())) return *found;
         }
         std::string all;
         for (const Named<E>& row : words) all += (all.empty() ? "'" : ", '") + std::string(row.name) + "'";
@@ -118,23 +120,22 @@ void Reader::read(const char* name, const Json& given, T& field) {
         if (!given.is_null()) read(name, given, field.emplace());
     } else if constexpr (std::is_same_v<T, bool>) {
         if (!given.is_boolean()) fail(std::string(name) + ": expected true or false");
-        field = given.template get<bool>();
+        field = given.boolean();
     } else if constexpr (std::is_floating_point_v<T>) {
         field = static_cast<T>(number(name, given));
     } else if constexpr (std::is_integral_v<T>) {
         field = static_cast<T>(integer(name, given));
     } else if constexpr (std::is_same_v<T, std::string>) {
-        if (!given.is_string()) fail(std::string(name) + ": expected a string");
-        field = given.template get<std::string>();
+        field = text_from(given, name);
     } else if constexpr (std::is_same_v<T, Swizzle>) {
         field = swizzle_from(given, name);
     } else if constexpr (std::is_same_v<T, YAxis>) {
         field = word(name, given, kYAxisNames);
     } else {  // two integers: Extent, Fade
-        if (!given.is_array() || given.size() != 2) fail(std::string(name) + ": expected a pair of integers");
+        if (!given.is_list() || given.elements().size() != 2) fail(std::string(name) + ": expected a pair of integers");
         auto& [first, second] = field;
-        first = integer(name, given[0]);
-        second = integer(name, given[1]);
+        first = integer(name, given.elements()[0]);
+        second = integer(name, given.elements()[1]);
     }
 }
 

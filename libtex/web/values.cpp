@@ -2,6 +2,8 @@
 
 #include "values.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <utility>
@@ -16,9 +18,10 @@ struct Array {
 };
 
 Array array_from(const Json& given, const std::string& name) {
-    if (!given.is_object() || !given.contains("at")) fail(name + ": expected a typed array");
-    return {reinterpret_cast<const std::byte*>(given["at"].get<std::uintptr_t>()), given["count"].get<std::size_t>(),
-            given["type"].get<std::string>()};
+    const Json *const at = given.find("at"), *const count = given.find("count"), *const type = given.find("type");
+    if (at == nullptr || count == nullptr || type == nullptr) fail(name + ": expected a typed array");
+    return {reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(at->number())),
+            static_cast<std::size_t>(count->number()), type->text()};
 }
 
 // Samples as floats: bytes and words are codes of unorm.
@@ -43,10 +46,10 @@ void need_room(Extent extent, const std::string& name) {
 // The extent of {width, height, data, stride}, where stride counts samples from one row to the next.
 Extent layout_from(const Json& given, const std::string& name, int channels, Array& array, std::size_t& stride) {
     const auto side = [&](const char* key) {
-        const Json& value = member(given, key);
-        if (!value.is_number_integer() || value.get<double>() < 1 || value.get<double>() > kMaxExtent)
+        const double value = member(given, key).number();
+        if (!(value >= 1.0 && value <= kMaxExtent) || value != std::floor(value))
             fail(name + "." + key + ": must be from 1 to " + std::to_string(kMaxExtent));
-        return value.get<int>();
+        return static_cast<int>(value);
     };
     const Extent extent{side("width"), side("height")};
     need_room(extent, name);
@@ -54,8 +57,10 @@ Extent layout_from(const Json& given, const std::string& name, int channels, Arr
     if (array.type != "f32" && array.type != "u16" && array.type != "u8")
         fail(name + ".data: expected a Float32Array, Uint16Array or Uint8Array");
     const auto row = static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels);
-    stride = given.value("stride", row);
-    if (stride < row) fail(name + ".stride: must be at least " + std::to_string(row));
+    const Json* const own_stride = given.find("stride");
+    const double samples = own_stride != nullptr ? own_stride->number() : static_cast<double>(row);
+    if (!(samples >= static_cast<double>(row))) fail(name + ".stride: must be at least " + std::to_string(row));
+    stride = static_cast<std::size_t>(std::min(samples, 0x1p31));
     if (static_cast<double>(array.count) < static_cast<double>(stride) * (extent.height - 1) + static_cast<double>(row))
         fail(name + ".data: has fewer samples than its width and height need");
     return extent;
@@ -64,8 +69,14 @@ Extent layout_from(const Json& given, const std::string& name, int channels, Arr
 }  // namespace
 
 const Json& member(const Json& of, const char* name) {
-    if (!of.is_object() || !of.contains(name)) fail(std::string(name) + ": is missing");
-    return of[name];
+    const Json* const found = of.find(name);
+    if (found == nullptr) fail(std::string(name) + ": is missing");
+    return *found;
+}
+
+Json value_or_null(const Json& of, const char* name) {
+    const Json* const found = of.find(name);
+    return found != nullptr ? *found : Json();
 }
 
 std::span<const std::byte> bytes_from(const Json& given, const std::string& name) {
@@ -101,11 +112,11 @@ NormalMap map_from(const Json& given, const std::string& name) {
 
 MipChain chain_from(const Json& given, const std::string& name) {
     MipChain chain;
-    if (!given.is_array()) {
+    if (!given.is_list()) {
         chain.levels.push_back(map_from(given, name));
         return chain;
     }
-    for (const Json& level : given) {
+    for (const Json& level : given.elements()) {
         const auto k = static_cast<int>(chain.levels.size());
         const std::string at = name + "[" + std::to_string(k) + "]";
         chain.levels.push_back(map_from(level, at));
@@ -119,18 +130,25 @@ MipChain chain_from(const Json& given, const std::string& name) {
 
 Texture texture_from(const Json& given) {
     Texture texture;
-    const auto format = find_by_name(kFormatNames, member(given, "format").get<std::string>());
+    const auto format = find_by_name(kFormatNames, member(given, "format").text());
     if (!format) fail("texture.format: is no format");
     texture.format = *format;
     texture.swizzle = swizzle_from(member(given, "swizzle"), "texture.swizzle");
-    texture.swizzle_known = given.value("swizzle_known", false);
-    texture.y_axis = given.value("y_axis", "up") == "down" ? YAxis::down : YAxis::up;
-    texture.y_known = given.value("y_known", false);
-    texture.srgb = given.value("srgb", false);
-    for (const Json& from : member(given, "levels")) {
+    const auto flag = [&](const char* key) {
+        const Json value = value_or_null(given, key);
+        if (!value.is_null() && !value.is_boolean()) fail(std::string("texture.") + key + ": expected true or false");
+        return value.boolean();
+    };
+    texture.swizzle_known = flag("swizzle_known");
+    texture.y_axis = value_or_null(given, "y_axis").text() == "down" ? YAxis::down : YAxis::up;
+    texture.y_known = flag("y_known");
+    texture.srgb = flag("srgb");
+    for (const Json& from : list_from(member(given, "levels"), "texture.levels")) {
         const std::span<const std::byte> bytes = bytes_from(member(from, "bytes"), "texture.levels");
-        texture.levels.push_back(
-            {{member(from, "width").get<int>(), member(from, "height").get<int>()}, {bytes.begin(), bytes.end()}});
+        const auto side = [&](const char* key) {
+            return static_cast<int>(std::clamp(member(from, key).number(), 0.0, kMaxExtent + 1.0));
+        };
+        texture.levels.push_back({{side("width"), side("height")}, {bytes.begin(), bytes.end()}});
         const Level& level = texture.levels.back();
         const auto k = static_cast<int>(texture.levels.size()) - 1;
         if (level.extent.width < 1 || level.extent.width > kMaxExtent || level.extent.height < 1 ||
@@ -167,8 +185,8 @@ Json Answer::of(const NormalMap& map) {
 }
 
 Json Answer::of(const MipChain& chain) {
-    Json levels = Json::array();
-    for (const NormalMap& level : chain.levels) levels.push_back(of(level));
+    Json levels = Json::list();
+    for (const NormalMap& level : chain.levels) levels.append(of(level));
     return levels;
 }
 
@@ -185,9 +203,9 @@ Json Answer::of(const Plane<float>& plane) {
 }
 
 Json Answer::of(Texture texture) {
-    Json levels = Json::array();
+    Json levels = Json::list();
     for (Level& level : texture.levels) {
-        levels.push_back(
+        levels.append(
             {{"width", level.extent.width}, {"height", level.extent.height}, {"bytes", of(std::move(level.bytes))}});
     }
     return {{"format", name_of(kFormatNames, texture.format)},
@@ -196,7 +214,7 @@ Json Answer::of(Texture texture) {
             {"y_axis", name_of(kYAxisNames, texture.y_axis)},
             {"y_known", texture.y_known},
             {"srgb", texture.srgb},
-            {"remarks", texture.remarks},
+            {"remarks", Json::list({texture.remarks.begin(), texture.remarks.end()})},
             {"levels", levels}};
 }
 

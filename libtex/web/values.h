@@ -17,7 +17,6 @@ namespace tex::web {
 
 // What a call answers. Arrays that it refers to live until the next call.
 struct Answer {
-    Json value;
     std::vector<std::shared_ptr<void>> arrays;
 
     Json array(const char* type, std::shared_ptr<void> memory, std::size_t count);
@@ -30,6 +29,7 @@ struct Answer {
 
 // Throw Failure.
 const Json& member(const Json& of, const char* name);
+Json value_or_null(const Json& of, const char* name);
 std::span<const std::byte> bytes_from(const Json& given, const std::string& name);
 Plane<float> plane_from(const Json& given, const std::string& name);
 NormalMap map_from(const Json& given, const std::string& name);
