@@ -75,6 +75,9 @@ CompareNormals::CompareNormals(const cli::ProgramRow& row) : Program(row) {
         if (curve_.is_asked()) return;
         if (inputs.size() != 2) throw cli::UsageError("two files are compared: A and B");
         if (inputs[0] == "-" && inputs[1] == "-") throw cli::UsageError("standard input can only be read once");
+        if (cli::is_folder(inputs[0]) && (documents_.has_heat_map() || mesh_.has_mesh()))
+            throw cli::UsageError(cli::printable(inputs[0]),
+                                  "is a folder, and --heatmap and --mesh are for two files; --report takes folders");
         std::vector<std::string> read = sources_ = sources();
         read.insert(read.end(), command.argument_files().begin(), command.argument_files().end());
         documents_.check(read);
@@ -152,10 +155,6 @@ Result<cli::ExitCode> CompareNormals::compare_inputs(cli::Console& console) {
 // What fails for one pair does not keep the others from being compared.
 Result<cli::ExitCode> CompareNormals::compare_folders(cli::Console& console) {
     const std::vector<std::string>& names = command.inputs();
-    if (documents_.has_heat_map() || mesh_.has_mesh())
-        throw cli::UsageError(cli::printable(names[0]),
-                              "is a folder, and --heatmap and --mesh are for two files; "
-                              "--report takes folders");
     const auto pairs = cli::folder_pairs(names[0], names[1], running_.read);
     if (!pairs) return pairs.error();
     for (std::size_t k = 0; k < 2; ++k) {

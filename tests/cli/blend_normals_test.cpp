@@ -266,6 +266,8 @@ TEST_F(BlendNormals, SaysWhatThePlaceOfADetailCosts) {
     has(warnings({"--tiling", "16"}),
         "detail.exr: repeats so often that its 128x128 texels shrink to 32x32; an extent of 2048x2048 keeps its finest "
         "bumps, and one that is given, such as 512x512, is taken without this warning");
+    const Ran larger = go("blend-normals", {"detail.exr", "base.exr", "-o", "larger.exr"});
+    has(larger.err, "base.exr: is larger than the result: its 512x512 texels shrink to 128x128; an extent of 512x512 ");
     for (const char* extent : {"512x512", "2048x2048"}) EXPECT_EQ(warnings({"--tiling", "16", "--extent", extent}), "");
     has(warnings({"--tiling", "2.5"}),
         "detail.exr: repeats 2.5 times, so that the result has seams where it repeats; a wrap of clamp says that it "

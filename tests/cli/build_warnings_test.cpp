@@ -103,4 +103,19 @@ TEST_F(BuildWarnings, OutputsOfInputsThatAreGoneAreCounted) {
     EXPECT_EQ(run(scratch_, "build-normals", {"--no-sync"}).out.find("no longer"), std::string::npos);
 }
 
+// --prune removes only what a rule can make, so that another file type leaves files that it does not know.
+TEST_F(BuildWarnings, OutputsThatNoRuleNamesAnyMoreAreForTheUserToDelete) {
+    ASSERT_EQ(build().code, 0);
+    scratch_.write("normals.toml",
+                   "version = 1\n[defaults]\nout-dir = \"out\"\nname = \"{dir}/{stem}.png\"\n[[rule]]\n"
+                   "match = \"art/*_n.png\"\nsteps = [ { pack = { y-in = \"up\", format = \"rgb8\" } } ]\n");
+    const Ran changed = run(scratch_, "build-normals", {"--no-sync"});
+    EXPECT_NE(changed.out.find("; 2 outputs of earlier runs are no longer made (such as "), std::string::npos)
+        << changed.out;
+    EXPECT_NE(changed.out.find(": no rule gives an output such a name now, so delete what you do not need)"),
+              std::string::npos)
+        << changed.out;
+    EXPECT_EQ(changed.out.find("--prune"), std::string::npos) << changed.out;
+}
+
 }  // namespace tex::cli

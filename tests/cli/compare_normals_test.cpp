@@ -170,6 +170,7 @@ TEST_F(CompareNormals, FoldersAreComparedByTheNamesOfTheirFiles) {
     const Ran pictured = compare({"old", "new", "--heatmap", "h.png"});
     EXPECT_EQ(pictured.code, 2);
     EXPECT_NE(pictured.err.find("old: is a folder, and --heatmap and --mesh are for two files"), std::string::npos);
+    EXPECT_EQ(compare({"old", "new", "--heatmap", "maps"}).err, pictured.err) << "whatever its name";
     // The page has the pairs that differ and those that failed, and replaces no file of the folders.
     ASSERT_EQ(compare({"old", "new", "--report", "page.html", "--depfile", "d"}).code, 4);
     const std::string page = scratch_.read("page.html"), read = scratch_.read("d");

@@ -381,4 +381,12 @@ TEST_F(ModelInputs, ReportsNameTheMap) {
     EXPECT_EQ(line["scale"], -1.0);
 }
 
+// The normals of a smooth cone, on the flat facets of the same cone, are no slopes of heights.
+TEST_F(ModelInputs, SmoothNormalsOnFacetsAreNotTakenForExchangedChannels) {
+    const std::string meshes = TEX_SOURCE_DIR "/../shared/data/mesh/mikktspace_obj/";
+    if (!std::filesystem::exists(meshes)) GTEST_SKIP() << "no ../shared/data";
+    does("transfer-normals " + meshes + "doomcone.obj " + meshes + "doomcone_smooth.obj --extent 256 -o n.png --quiet");
+    EXPECT_EQ(go("check-normals n.png").out.find("N308"), std::string::npos);
+}
+
 }  // namespace tex::cli

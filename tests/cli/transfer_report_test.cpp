@@ -84,6 +84,15 @@ TEST_F(TransferPage, ShowsMissedTexelsAndFailures) {
     has("has no faces");
 }
 
+TEST_F(TransferPage, OfFailuresAloneReplacesNothing) {
+    scratch_.write("low.obj", "v 0 0 0\n");
+    scratch_.write("page.html", "of another run");
+    for (const char* output : {"n.png", "n.glb"}) {
+        EXPECT_NE(go({"low.obj", "crate_high.glb", "-o", output, "--report", "page.html"}).code, 0) << output;
+        EXPECT_EQ(scratch_.read("page.html"), "of another run") << output;
+    }
+}
+
 TEST_F(TransferPage, IsNoOtherFile) {
     const std::vector<std::string> pair = {"crate_low.glb", "crate_high.glb", "-o", "n.png"};
     const auto with = [&](const std::vector<std::string>& more) {

@@ -189,7 +189,7 @@ TEST_P(EveryUsage, OutputsMustNotBeInputs) {
 }
 
 TEST_P(EveryUsage, OutputsMustDiffer) {
-    refuses({"a.png", "a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output out/a.dds");
+    refuses({"a.png", "a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the input a.png is given twice");
     refuses({"a.png", "b.png", "--out-dir", "out", "--name", "all.dds"},
             "a.png and b.png have the same output out/all.dds");
     refuses({"a.png", "folder/../a.png", "--out-dir", "out", "--name", "{stem}.dds"}, "the same output");

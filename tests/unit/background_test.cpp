@@ -133,6 +133,17 @@ TEST(Background, OfBlueZeroMayHaveSoftEdges) {
     EXPECT_EQ(ids(checked(reference::texture_of(soft))), Ids{"N215"});
 }
 
+// A contrast makes all vectors short, and those of a slope without bumps alike.
+TEST(Background, IsNoSlopeOfAMapWhoseVectorsAreShort) {
+    const auto faded = [](int c) { return reference::rounded_code(127.5 + 0.48 * (c - 127.5)); };
+    const reference::Codes codes = with_background(waves(), {128, 102, 252});
+    const std::set<std::string> found = ids(checked(reference::texture_of(reference::with_curve(codes, faded))));
+    EXPECT_EQ(found.count("N215"), 0u);
+    const reference::Codes grey = with_background(waves(), {128, 128, 128});
+    const std::set<std::string> kept = ids(checked(reference::texture_of(reference::with_curve(grey, faded))));
+    EXPECT_EQ(kept.count("N215"), 1u);
+}
+
 TEST(Background, ScatteredTexelsAreDamage) {
     reference::Codes codes = reference::codes_of(waves());
     for (int k = 0; k < kExtent.texels(); k += 37) {

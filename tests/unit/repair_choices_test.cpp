@@ -37,6 +37,27 @@ TEST(Repair, TurnsVectorsAsThePictureWas) {
     EXPECT_EQ(shown.steps.front().certainty, RepairClass::safe);
 }
 
+// Whoever says that the picture was turned leaves one direction of green that its slopes allow.
+TEST(Repair, TurnsVectorsWhoseGreenPointsDown) {
+    const Codes down = reference::flip_green(clean());
+    Codes turned = down;
+    for (std::size_t k = 0; k < turned.values.size(); k += 3) {
+        turned.values[k] = static_cast<unsigned char>(255 - down.values[k + 1]);
+        turned.values[k + 1] = down.values[k];
+    }
+    RepairOptions options;
+    options.turned = TurnedPicture::left;
+    const Repaired done = repaired(reference::texture_of(turned), options);
+    EXPECT_EQ(plan_of(done), "N308 turn all vectors by 90 degrees to the left, as the picture was; green points down");
+    ASSERT_TRUE(done.texture);
+    EXPECT_EQ(codes_in(*done.texture), down.values);
+    options.checks.require.y = YAxis::up;
+    const Repaired refused = repaired(reference::texture_of(turned), options);
+    EXPECT_TRUE(refused.has_errors());
+    ASSERT_FALSE(refused.left.empty());
+    EXPECT_EQ(refused.left.front().finding.rule->id, "N401") << "green is still down, or red is mirrored";
+}
+
 // The file states that y is down, and it is up, as required: the statement is wrong, or red is mirrored.
 TEST(Repair, LeavesAStatementThatTheTexelsContradictToAChoice) {
     Texture texture = reference::texture_of(clean());

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tex/file.h>
 
+#include "bench/wild_maps.h"
 #include "reference/damage.h"
 #include "unit/repaired_maps.h"
 
@@ -244,6 +247,22 @@ TEST(RepairTone, BlocksOfJpegAreNoEnlargement) {
             std::ranges::any_of(report->findings, [](const Finding& f) { return f.rule->id == "N312"; });
         EXPECT_EQ(is_enlarged, name == "map.png");
     }
+}
+
+// Brightness of 15 %, which leaves z in few texels: they deny all contrasts, whatever the histogram suggests.
+TEST(RepairTone, ReadsWhatIsLeftOfZAfterBrightness) {
+    const std::string file = reference::kWildMaps + "normal/castle_cool_water_texture_seamless_normalmap.png";
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << "no ../shared/data/wild4";
+    const auto intact = read_texture(file);
+    ASSERT_TRUE(intact);
+    Texture bright = *intact;
+    for (std::byte& byte : bright.levels.front().bytes)
+        byte = static_cast<std::byte>(std::min(255, static_cast<int>(byte) + 38));
+    RepairOptions options;
+    options.likely = true;
+    const Repaired done = repaired(bright, options);
+    ASSERT_TRUE(done.texture) << plan_of(done);
+    EXPECT_LT(angle(*done.texture, *intact), 1.0) << plan_of(done);
 }
 
 }  // namespace tex::repaired_maps

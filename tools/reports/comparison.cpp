@@ -124,7 +124,10 @@ std::string FolderTally::text() const {
     std::string text = fmt::format("maps compared: {}, of which {} differ", maps_, different_);
     if (failed_ > 0) text += fmt::format("; files that failed: {}", failed_);
     if (alone_ > 0) text += fmt::format("; files without a partner: {}", alone_);
-    if (different_ > 0) text += fmt::format("; largest mean: {:.4f} degrees, of {}", most_, printable(most_of_));
+    if (different_ > 0) {
+        const std::string most = most_ < 0.00005 ? "less than 0.0001" : fmt::format("{:.4f}", most_);
+        text += fmt::format("; largest mean: {} degrees, of {}", most, printable(most_of_));
+    }
     return text;
 }
 

@@ -71,7 +71,8 @@ std::string KindTotals::text() const {
         const int count = of[static_cast<std::size_t>(row.value)];
         if (count == 0) continue;
         text += fmt::format("{}{} {}", before, count, row.name);
-        if (row.value == PictureKind::normals) text += fmt::format(" (green up in {}, down in {})", up, down);
+        if (row.value == PictureKind::normals)
+            text += fmt::format(" (green up in {}, down, or red left, in {})", up, down);
         before = ", ";
     }
     return text;

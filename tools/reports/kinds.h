@@ -24,7 +24,7 @@ struct KindTotals {
     int up = 0, down = 0;
 
     void add(const CheckReport& report);
-    [[nodiscard]] std::string text() const;  // "3 files: 2 normals (green up in 1, down in 0), 1 heights"
+    [[nodiscard]] std::string text() const;  // "3 files: 2 normals (green up in 1, down, or red left, in 0), 1 heights"
 };
 
 }  // namespace tex::cli

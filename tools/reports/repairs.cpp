@@ -35,6 +35,7 @@ Json step_json(const RepairStep& step) {
         json["channels"] = std::move(channels);
     }
     if (step.part) json["part"] = {step.part->x, step.part->y, step.part->width, step.part->height};
+    if (step.y) json["y"] = name_of(kYAxisNames, *step.y);
     json["degrees"] = static_cast<float>(step.degrees);
     return json;
 }

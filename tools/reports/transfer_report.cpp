@@ -220,6 +220,9 @@ void TransferReport::add_failure(const Job& job, const Error& error) {
 
 ExitCode TransferReport::write(Console& console) const {
     if (!is_given()) return ExitCode::done;
+    const auto is_failed = [](const auto& row) { return row.second.failed; };
+    // A page without any result would replace the page of a run that had some.
+    if (lods_ == 0 && std::all_of(texels_.begin(), texels_.end(), is_failed)) return ExitCode::done;
     if (lods_ + failed_lods_ > 0) {
         std::string models = fmt::format("{} model{}", lods_, lods_ == 1 ? "" : "s");
         if (failed_lods_ > 0) models += fmt::format("; {} failed", failed_lods_);

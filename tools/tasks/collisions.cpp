@@ -56,6 +56,8 @@ void check_collisions(const std::vector<Task>& tasks, const std::string& depfile
                 throw UsageError(
                     fmt::format("two outputs of {} are one file, {}", printable(task.name()), printable(path)));
             }
+            if (other->engine == task.engine && is_same_name(other->name(), task.name()))
+                throw UsageError(fmt::format("the input {} is given twice", printable(task.name())));
             if (other->engine != task.engine && other->name() == task.name()) {
                 throw UsageError(
                     fmt::format("{} for {} and for {} have the same output {}; {{engine}} in --name separates "

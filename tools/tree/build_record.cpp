@@ -134,20 +134,38 @@ void BuildRun::store(const BuildTask& task, const Stale& made, const Inputs& inp
 }
 
 // For the summary: outputs of earlier runs that are still there, and that no rule makes any more, since their inputs
-// are gone or renamed.
+// are gone or renamed (prune() removes them), or since rules have changed.
 std::string BuildRun::obsolete_words() const {
     std::set<std::string> wanted;
     for (const BuildTask& task : work_.tasks) wanted.insert(task.outputs.begin(), task.outputs.end());
-    std::size_t count = 0;
+    std::size_t removable = 0, kept = 0;
+    std::string first_kept;
     for (const auto& [output, record] : state_.outputs) {
-        const bool is_there = std::any_of(record.files.begin(), record.files.end(), [&](const auto& file) {
-            return status_of_link(contents_.path(file.first)).has_value();
-        });
-        count += is_there && !wanted.contains(output) ? 1 : 0;
+        if (wanted.contains(output)) continue;
+        std::vector<std::string> there;
+        for (const auto& [file, digest] : record.files) {
+            if (status_of_link(contents_.path(file))) there.push_back(file);
+        }
+        if (there.empty()) continue;
+        const std::string& input = record.input;
+        const auto foreign = std::find_if(there.begin(), there.end(),
+                                          [&](const std::string& file) { return !place_by_rules(input, file); });
+        if (foreign == there.end()) {
+            ++removable;
+        } else if (kept++ == 0) {
+            first_kept = *foreign;
+        }
     }
-    if (count == 0) return {};
-    return count == 1 ? "; 1 output of earlier runs is no longer made (--prune removes it)"
-                      : fmt::format("; {} outputs of earlier runs are no longer made (--prune removes them)", count);
+    std::string words;
+    const auto add = [&words](std::size_t count, const std::string& what) {
+        if (count == 0) return;
+        words += fmt::format("; {} output{} of earlier runs {} no longer made ({})", count, count == 1 ? "" : "s",
+                             count == 1 ? "is" : "are", what);
+    };
+    add(removable, fmt::format("--prune removes {}", removable == 1 ? "it" : "them"));
+    add(kept, fmt::format("{}{}: no rule gives an output such a name now, so delete what you do not need",
+                          kept == 1 ? "" : "such as ", printable(first_kept)));
+    return words;
 }
 
 }  // namespace tex::cli

@@ -123,6 +123,7 @@ struct RepairStep {
     std::optional<Region> part = {};         // of invert_part
     std::optional<ToneCurve> tone = {};      // of undo_tone
     std::optional<ChannelTones> tones = {};  // of undo_tone, instead of `tone`: of each channel by itself
+    std::optional<YAxis> y = {};  // of a turn: the direction of green, where the slopes show it and nothing states it
     // The mean angle by which it changes the normals of the base level; in maps of 8 Mtexels or more, of evenly spread
     // bands of rows.
     double degrees = 0.0;

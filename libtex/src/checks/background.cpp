@@ -264,6 +264,25 @@ bool others_point_outwards(const StoredVectors& map, Extent extent, const Backgr
            static_cast<double>(others) >= kLeastOthers * static_cast<double>(extent.texels());
 }
 
+// A short vector is no background if the others are short as well, as after a contrast: then it is one of them.
+bool are_others_as_short(const StoredVectors& map, Extent extent, const Background& background) {
+    constexpr float kLeast = 0.15f;  // shorter ones are as good as grey
+    constexpr double kAlike = 0.7;   // of their mean length
+    const auto [x, y, z] = background.value;
+    const float square = x * x + y * y + z * z;
+    if (!map.has_z() || square < kLeast * kLeast || square >= kShortest * kShortest || z < kLeast) return false;
+    double sum = 0.0;
+    std::int64_t others = 0;
+    for (int j = 0; j < extent.height; ++j) {
+        for (int i = 0; i < extent.width; ++i) {
+            if (background.holds(i, j)) continue;
+            ++others;
+            sum += std::sqrt(map.at(i, j).square());
+        }
+    }
+    return std::sqrt(square) * static_cast<double>(others) >= kAlike * sum;
+}
+
 // Whether alpha 0 hides texels: alpha is a cut-out, nearly 1 in half of the others or more, or no normals are below it.
 // In heights, 0 is the deepest place, and its normals are seen.
 bool hides_something(const Stored& stored, const Background& transparent) {
@@ -326,7 +345,7 @@ Result<std::optional<Background>> find_background(const Stored& stored, const Ex
     background.value = *value;
     background.width = extent.width;
     background.mask.resize(static_cast<std::size_t>(extent.texels()));
-    if (!mark_value(map, extent, background)) return transparent;
+    if (!mark_value(map, extent, background) || are_others_as_short(map, extent, background)) return transparent;
     const int reach = stored.in_blocks ? 2 * kMixReach : kMixReach;
     if (auto done = mark_mixtures(map, extent, reach, execution, background); !done) return done.error();
     if (background.is_turned_over() && !others_point_outwards(map, extent, background)) return transparent;

@@ -199,8 +199,10 @@ BestTone best_of_forms(double middle, bool with_gamma, const ToneTexels& texels)
 // Whether z allows what the codes show. A histogram keeps the traces of all that was ever done to a map, also of levels
 // that its maker set and that nobody wants back, so that z decides where vectors are unit vectors by some curve; where
 // they are by none, the curve must not make them worse.
-bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double as_stored) {
+bool agrees(ToneCandidate& found, const ToneTexels& texels, const ToneCandidate& best, double as_stored) {
     constexpr double kFits = 1.5, kMostMore = 1.75, kMostMoreCodes = 0.5;  // codes
+    constexpr double kMostMoreOfCut = 2.0, kMostMoreCodesOfCut = 0.1;
+    const double least = best.error;
     found.error = error_of(found.curve, texels);
     for (const ZForm form : {ZForm::inverted, ZForm::from_zero}) {
         const double error = error_of(found.curve, texels, form);
@@ -209,6 +211,9 @@ bool agrees(ToneCandidate& found, const ToneTexels& texels, double least, double
             found.form = form;
         }
     }
+    // Where it cuts z off nearly everywhere, z says nothing for it, and may say much for another curve.
+    const auto is_cut = [&](const auto& one) { return share_uncut(one.curve, texels, one.form) < kLeastUncut; };
+    if (found.error > kMostMoreOfCut * least + kMostMoreCodesOfCut && is_cut(found) && !is_cut(best)) return false;
     const bool is_strict = least < kFits || roundness(found.curve) > 1;
     return found.error <= (is_strict ? kMostMore * least + kMostMoreCodes : as_stored);
 }
@@ -275,7 +280,7 @@ std::optional<ToneFit> find_tone(const Stored& stored, const Centre& centre, con
     if (in_codes.is_proof()) {
         ToneCandidate found{nearest_middle(in_codes, comb, centre)};
         const bool is_shown = shows(found.curve, found.form) || in_codes.score >= kSureScore;
-        if (is_shown && agrees(found, texels, fits.best().error, as_stored)) {
+        if (is_shown && agrees(found, texels, fits.best(), as_stored)) {
             // Codes show a contrast, and which brightness went with it only as far as that is a round number.
             const bool is_cut = share_uncut(found.curve, texels, found.form) < kLeastUncut &&
                                 (roundness(found.curve) > 1 || off <= kFarOffMiddle);
@@ -323,7 +328,7 @@ std::optional<ToneFit> find_contrast(const Stored& stored, const Centre& centre,
         // Where z is cut off nearly everywhere, it contradicts no contrast.
         const bool is_sure =
             in_codes.score >= kSureScore || share_uncut(found.curve, texels, found.form) >= kLeastUncut;
-        if (is_sure && agrees(found, texels, best.error, as_stored))
+        if (is_sure && agrees(found, texels, best, as_stored))
             return ToneFit{found.curve, as_stored, found.error, as_stored, true};
     }
     if (as_stored < kLeastContrastError) return std::nullopt;

@@ -96,6 +96,8 @@ std::vector<RepairStep> turns(RepairStep step, const Finding& finding, const Kno
     if (finding.unit == "component" || (is_of_heights && !by_heights)) return {};
     if (known.turned && (*known.turned == TurnedPicture::left) != (step.kind == turn_left)) return {};
     if (known.turned || by_heights) step.certainty = safe;
+    // Whoever says that the picture was turned says with it which way green points: see exchange_text().
+    if (known.turned && !is_of_heights) step.y = finding.turned_y;
     return {step};
 }
 
@@ -141,7 +143,8 @@ std::string text_of(const RepairStep& step) {
         default: break;
     }
     for (const Named<RepairKind>& row : kRepairKindNames) {
-        if (row.value == step.kind) return std::string(row.meaning);
+        if (row.value == step.kind)
+            return std::string(row.meaning) + (step.y == YAxis::down ? "; green points down" : "");
     }
     return {};
 }

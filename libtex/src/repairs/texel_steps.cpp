@@ -365,7 +365,8 @@ Result<void> apply_step(const RepairStep& step, double figure, const RepairOptio
         case RepairKind::straighten: return turn_mean_out(levels, execution);
         case RepairKind::turn_left:
         case RepairKind::turn_right: {
-            const bool is_down = options.checks.require.y.value_or(current.y_axis) == YAxis::down;
+            const YAxis y = step.y.value_or(options.checks.require.y.value_or(current.y_axis));
+            const bool is_down = y == YAxis::down;
             const bool inverts_x = (step.kind == RepairKind::turn_left) != is_down;
             return row_change([inverts_x](const LevelTexels& t, int j) {
                 std::swap_ranges(t.row(t.x, j), t.row(t.x, j) + t.image.extent().width, t.row(t.y, j));

@@ -47,10 +47,13 @@ std::string shrink_text(const Layer& layer, const Extent& detail, const Extent& 
     const double shrunk = std::max(detail.width * across / result.width, detail.height * along / result.height);
     constexpr double kMost = 2.0;
     if (shrunk <= kMost) return {};
-    return "repeats so often that its " + sides_text(detail.width, detail.height) + " texels shrink to " +
-           sides_text(result.width / across, result.height / along) + "; an extent of " +
-           sides_text(shrunk * result.width, shrunk * result.height) + " keeps its finest bumps, and one that is " +
-           "given, such as " + sides_text(result.width, result.height) + ", is taken without this warning";
+    const std::string sides = sides_text(detail.width, detail.height) + " texels shrink to " +
+                              sides_text(result.width / across, result.height / along);
+    return (across > 1.0 || along > 1.0 ? "repeats so often that its " + sides
+                                        : "is larger than the result: its " + sides) +
+           "; an extent of " + sides_text(shrunk * result.width, shrunk * result.height) +
+           " keeps its finest bumps, and one that is given, such as " + sides_text(result.width, result.height) +
+           ", is taken without this warning";
 }
 
 // What to say of a detail that is cut where the result repeats. Empty if it is not.

@@ -46,8 +46,12 @@ const ProgramName& name_of(ReaderProgram program) {
 
 Error absent(const ProgramName& name) {
     const std::string file = name.file;
-    if (name.package == nullptr)
-        return {ErrorCode::io, {}, "the reader program " + file + " was not found beside libtex"};
+    if (name.package == nullptr) {
+        return {ErrorCode::io,
+                {},
+                "the reader program " + file + " was not found beside libtex: not in " + own_folder() +
+                    ", nor in ../libexec/libtex from there"};
+    }
     return {ErrorCode::io,
             {},
             "files of this type are read and written by " + file + ", which is not installed: install the package " +
