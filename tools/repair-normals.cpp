@@ -182,10 +182,9 @@ Result<void> RepairNormals::process_file(cli::Job& job, cli::RepairTotals& total
     if (job.task.model) {
         if (auto opened = job.task.model->open(read); !opened) return opened;
     } else if (!cli::is_special_file(job.task.input)) {
-        const auto text = cli::read_text_file(job.task.input, PTRDIFF_MAX);
-        if (!text) return text.error();
-        const auto* const first = reinterpret_cast<const std::byte*>(text->data());
-        read.bytes = std::make_shared<const std::vector<std::byte>>(first, first + text->size());
+        auto bytes = cli::read_binary_file(job.task.input);
+        if (!bytes) return bytes.error();
+        read.bytes = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
     }
     auto texture = read_texture(job.task.map_path(), read);
     if (!texture) return texture.error();

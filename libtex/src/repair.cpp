@@ -257,18 +257,7 @@ private:
     }
 
     Result<StoredLevels> decode_current() {
-        Texture with_swizzle;
-        const Texture& from = current();
-        with_swizzle.format = from.format;
-        with_swizzle.levels = from.levels;
-        with_swizzle.swizzle = report_.swizzle;
-        with_swizzle.swizzle_known = true;
-        with_swizzle.y_axis = from.y_axis;
-        with_swizzle.y_known = from.y_known;
-        with_swizzle.x_in_grey = from.x_in_grey;
-        with_swizzle.normal_encoding = from.normal_encoding;
-        with_swizzle.srgb = from.srgb;
-        return decode_levels(with_swizzle, report_.more_data, execution_);
+        return decode_levels(current(), report_.swizzle, report_.more_data, execution_);
     }
 
     [[nodiscard]] static bool changes_texels(RepairKind kind) {

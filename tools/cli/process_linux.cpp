@@ -41,9 +41,11 @@ const char* program_name() { return program_invocation_short_name; }
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    constexpr int kKept = 32 << 20, kLargeBlock = 4 << 20;
+    // Blocks of more than 32 MB would go back to the system whatever their threshold is, and each page of the next one
+    // would be cleared again: a quarter of the time of repair-normals with 4096x4096 texels.
+    constexpr int kKept = 1 << 30;
     mallopt(M_TRIM_THRESHOLD, kKept);
-    mallopt(M_MMAP_THRESHOLD, kLargeBlock);
+    mallopt(M_MMAP_MAX, 0);
 #endif
 }
 

@@ -16,7 +16,11 @@
 
 namespace tex::cli {
 
-Result<std::string> read_text_file(const std::string& path, std::size_t most) {
+namespace {
+
+// `Bytes` is a string or a vector of bytes.
+template <class Bytes>
+Result<Bytes> read_whole(const std::string& path, std::size_t most) {
     const bool from_stdin = path == "-";
     const ReadFile opened = open_to_read(from_stdin ? "" : path);
     FILE* file = from_stdin ? standard_input() : opened.get();
@@ -27,19 +31,29 @@ Result<std::string> read_text_file(const std::string& path, std::size_t most) {
     const bool has_size = status && status->is_regular();
     if (!has_size) most = std::min(most, kMostOfTextFile);
     const auto excess = [&] { return Error{ErrorCode::bad_data, name, fmt::format("has more than {} bytes", most)}; };
-    std::string text;
+    Bytes read;
     if (has_size && status->size > 0) {
         const auto size = static_cast<std::uint64_t>(status->size);
         if (size > most && !from_stdin) return excess();
-        text.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)));
+        read.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(size, most)));
     }
-    char buffer[65536];
+    typename Bytes::value_type buffer[65536];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, file)) {
-        if (count > most - text.size()) return excess();
-        text.append(buffer, count);
+        if (count > most - read.size()) return excess();
+        read.insert(read.end(), buffer, buffer + count);
     }
     if (std::ferror(file) != 0) return failed();
-    return text;
+    return read;
+}
+
+}  // namespace
+
+Result<std::string> read_text_file(const std::string& path, std::size_t most) {
+    return read_whole<std::string>(path, most);
+}
+
+Result<std::vector<std::byte>> read_binary_file(const std::string& path) {
+    return read_whole<std::vector<std::byte>>(path, PTRDIFF_MAX);
 }
 
 Result<void> write_text_file(const std::string& path, const std::string& text, const WriteOptions& options) {

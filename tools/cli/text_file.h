@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include <tex/file.h>
 #include <tex/types.h>
@@ -19,6 +20,9 @@ inline constexpr std::size_t kMostOfRecord = std::size_t{1} << 30;
 // The bytes of a file; "-" is standard input. Errors: io; bad_data, if there are more than `most` bytes, or more than
 // kMostOfTextFile in what is no regular file. A regular file says so before any of it is read.
 [[nodiscard]] Result<std::string> read_text_file(const std::string& path, std::size_t most = kMostOfTextFile);
+
+// The bytes of a texture or of another file that is kept in memory. Errors: io.
+[[nodiscard]] Result<std::vector<std::byte>> read_binary_file(const std::string& path);
 
 // Whether a write to `path` goes through: to standard output, a FIFO or a device.
 [[nodiscard]] bool is_special_file(const std::string& path);

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "files/system_error.h"
@@ -92,12 +93,18 @@ Result<InputFile> InputFile::from_descriptor(const std::string& name, Descriptor
 
 Result<InputFile> InputFile::from_memory(const std::string& name, std::vector<std::byte> bytes) {
     return no_throw([&]() -> Result<InputFile> {
-        if (bytes.empty()) return Error{ErrorCode::bad_data, name, "is empty"};
+        return from_memory(name, std::make_shared<const std::vector<std::byte>>(std::move(bytes)));
+    });
+}
+
+Result<InputFile> InputFile::from_memory(const std::string& name, std::shared_ptr<const std::vector<std::byte>> bytes) {
+    return no_throw([&]() -> Result<InputFile> {
+        if (bytes->empty()) return Error{ErrorCode::bad_data, name, "is empty"};
         InputFile file;
         file.path_ = name;
-        file.size_ = static_cast<std::int64_t>(bytes.size());
-        file.head_.assign(bytes.begin(),
-                          bytes.begin() + static_cast<std::ptrdiff_t>(std::min(bytes.size(), kHeadBytes)));
+        file.size_ = static_cast<std::int64_t>(bytes->size());
+        file.head_.assign(bytes->begin(),
+                          bytes->begin() + static_cast<std::ptrdiff_t>(std::min(bytes->size(), kHeadBytes)));
         file.memory_ = std::move(bytes);
         return file;
     });
@@ -114,7 +121,7 @@ Result<void> InputFile::settle(std::int64_t limit) {
     if (!bytes) return std::move(bytes).error();
     fd_.reset();
     size_ = static_cast<std::int64_t>(bytes->size());
-    memory_ = std::move(*bytes);
+    memory_ = std::make_shared<const std::vector<std::byte>>(std::move(*bytes));
     position_ = 0;
     return {};
 }
@@ -176,7 +183,7 @@ Result<std::vector<std::byte>> InputFile::read_rest(std::int64_t limit) {
 }
 
 Result<InputFile> open_input(const std::string& path, const ReadOptions& options) {
-    return options.bytes ? InputFile::from_memory(path, *options.bytes) : InputFile::open(path);
+    return options.bytes ? InputFile::from_memory(path, options.bytes) : InputFile::open(path);
 }
 
 std::int64_t largest_file(const ReadOptions& options) {

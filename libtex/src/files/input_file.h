@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,7 @@ public:
     static Result<InputFile> open(const std::string& path);
     // Opens bytes that are already in memory; error messages call them `name`. Errors: bad_data (empty), out_of_memory.
     static Result<InputFile> from_memory(const std::string& name, std::vector<std::byte> bytes);
+    static Result<InputFile> from_memory(const std::string& name, std::shared_ptr<const std::vector<std::byte>> bytes);
 
     // A file that is already open, from the byte `start` on; error messages call it `name`. Errors: io, bad_data
     // (empty).
@@ -64,7 +66,7 @@ private:
     Descriptor fd_;
     std::optional<std::int64_t> size_;
     std::int64_t start_ = 0;  // where the file begins: standard input may be a file that was partly read
-    std::optional<std::vector<std::byte>> memory_;  // replaces fd_
+    std::shared_ptr<const std::vector<std::byte>> memory_;  // replaces fd_
     std::vector<std::byte> head_;
     std::size_t position_ = 0;  // the position of read() in memory_ or head_
 };

@@ -104,7 +104,8 @@ StoredLevels StoredLevels::clone() const {
     return copy;
 }
 
-Result<StoredLevels> decode_levels(const Texture& texture, bool has_extras, const Execution& execution) {
+Result<StoredLevels> decode_levels(const Texture& texture, const Swizzle& swizzle, bool has_extras,
+                                   const Execution& execution) {
     StoredLevels all;
     for (int k = 0; k < static_cast<int>(texture.levels.size()); ++k) {
         auto image = decode(texture, k, execution);
@@ -112,16 +113,15 @@ Result<StoredLevels> decode_levels(const Texture& texture, bool has_extras, cons
         all.levels.push_back(std::move(*image));
     }
     all.head.format = texture.format;
-    all.head.swizzle = texture.swizzle;
-    all.head.swizzle_known = texture.swizzle_known;
+    all.head.swizzle = swizzle;
+    all.head.swizzle_known = true;
     all.head.y_axis = texture.y_axis;
     all.head.y_known = texture.y_known;
     all.head.x_in_grey = texture.x_in_grey;
     all.head.normal_encoding = texture.normal_encoding;
     all.head.srgb = texture.srgb;
-    all.is_signed =
-        stores_signed(all.levels.front(), texture.swizzle, range_of(texture.normal_encoding, UnpackOptions{}));
-    all.keeps_blocks = !has_extras && block_encoding(texture.format, texture.swizzle).has_value();
+    all.is_signed = stores_signed(all.levels.front(), swizzle, range_of(texture.normal_encoding, UnpackOptions{}));
+    all.keeps_blocks = !has_extras && block_encoding(texture.format, swizzle).has_value();
     return all;
 }
 

@@ -25,9 +25,10 @@ struct StoredLevels {
     [[nodiscard]] StoredLevels clone() const;
 };
 
-// Decodes all levels. The texture's swizzle says what channels hold; `has_extras`: other data, too.
+// Decodes all levels. `swizzle` says what channels hold, and `has_extras` that they hold other data, too.
 // Errors: out_of_memory, cancelled.
-[[nodiscard]] Result<StoredLevels> decode_levels(const Texture& texture, bool has_extras, const Execution& execution);
+[[nodiscard]] Result<StoredLevels> decode_levels(const Texture& texture, const Swizzle& swizzle, bool has_extras,
+                                                 const Execution& execution);
 
 // Stores them in the format of the source, or in one without blocks if that cannot be written with this layout.
 // Errors: out_of_memory, cancelled.
