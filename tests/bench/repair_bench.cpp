@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // repair_bench: which damages repair() undoes in 40 clean maps of ../shared/data/wild4, and how exactly.
 //
-//     repair_bench [MAPS [FIRST]]    the number of maps (40) and of storages (all 5), or "jpeg" for JPEG alone
+//     repair_bench [MAPS [FIRST]] [likely]
+//                                    the number of maps (40) and of storages (all 5), or "jpeg" for JPEG alone; with
+//                                    likely repairs for every damage
 //     repair_bench --pairs [MAPS]    two damages at once, in 8 bits
 //     repair_bench --all             what repairs do to all of wild4, undamaged
 //
@@ -142,6 +144,28 @@ struct Judged {
     Tally tally;
 };
 
+// How many damages that turn the normals by so many degrees or more are undone.
+struct Curve {
+    static constexpr double kFrom[] = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+    Count of[std::size(kFrom)][kStorages];
+    void add(double degrees, int storage, bool is_undone) {
+        for (std::size_t k = 0; k < std::size(kFrom); ++k) {
+            if (degrees < kFrom[k]) continue;
+            ++of[k][storage].visible;
+            of[k][storage].undone += is_undone ? 1 : 0;
+        }
+    }
+    void print() const {
+        for (std::size_t k = 0; k < std::size(kFrom); ++k) {
+            std::printf("from %2.0f degrees on                  ", kFrom[k]);
+            for (const Count& count : of[k])
+                std::printf(" %5d/%-4d %5.1f %%     ", count.undone, count.visible,
+                            100.0 * count.undone / std::max(1, count.visible));
+            std::printf("\n");
+        }
+    }
+};
+
 // FNV-1a of the name without its folder.
 bool is_held_out(const std::string& file) {
     std::uint32_t hash = 2166136261u;
@@ -154,7 +178,8 @@ struct Storages {
     int first = 0, end = kStorages;
 };
 
-void judge(const Codes& codes, const std::string& file, const Storages& storages, std::vector<Judged>& all) {
+void judge(const Codes& codes, const std::string& file, const Storages& storages, bool likely, std::vector<Judged>& all,
+           Curve& curve) {
     const bool held_out = is_held_out(file);
     CheckOptions checks;
     const auto plain = check(file, stored_as(values_of(codes, false), Storage::rgb8), checks);
@@ -181,9 +206,10 @@ void judge(const Codes& codes, const std::string& file, const Storages& storages
             if (damage.with_alpha && storage == Storage::jpeg) continue;
             const Texture texture = stored_as(damaged, storage);
             Count& count = row.tally.of[held_out ? 1 : 0][s];
-            if (angle_to(undamaged->levels.front(), texture) < kVisible) continue;
+            const double turned = angle_to(undamaged->levels.front(), texture);
+            if (turned < kVisible) continue;
             RepairOptions options;
-            options.likely = damage.likely;
+            options.likely = damage.likely || likely;
             if (damage.needs_y) {
                 options.checks.require.y = plain->y.y;
                 if (!damage.needs_heights) options.mirrored = MirroredChannel::green;
@@ -195,7 +221,9 @@ void judge(const Codes& codes, const std::string& file, const Storages& storages
                 angle_to(undamaged->levels.front(), stored_as(each(values_in(texture, storage), damage.undo), storage));
             const double angle = angle_to(undamaged->levels.front(), repaired->texture ? *repaired->texture : texture);
             ++count.visible;
-            if (angle > std::max(kFactor * reference, kExact)) {
+            const bool is_undone = angle <= std::max(kFactor * reference, kExact);
+            curve.add(turned, s, is_undone);
+            if (!is_undone) {
                 std::string ids;
                 for (const auto& step : repaired->steps) ids += " " + text_of(step);
                 ids += ";";
@@ -274,10 +302,13 @@ int main(int argc, char** argv) {
     std::vector<Judged> all;
     for (const Damage& damage : is_of_pairs ? damage_pairs() : damages()) all.push_back({damage, {}});
     const std::vector<std::string> files = clean_maps(static_cast<std::size_t>(count ? std::atoi(count) : 40));
+    const bool likely = std::string_view(argv[argc - 1]) == "likely";
+    Curve curve;
     for (const std::string& file : files) {
-        if (const auto codes = middle_of(file)) judge(*codes, file, storages, all);
+        if (const auto codes = middle_of(file)) judge(*codes, file, storages, likely, all, curve);
     }
     print(all, 0);
     print(all, 1);
+    curve.print();
     return 0;
 }

@@ -259,7 +259,7 @@ struct Finding {
     std::string fix_harms = {};
     std::optional<ToneCurve> tone = {};      // what the channels went through (N313, N314, and some N201, N209, N302)
     std::optional<ChannelTones> tones = {};  // or each of them (some N314)
-    // Of N308 about x and y: the direction that green has if the picture was turned. If they were exchanged, it has the
+    // N308 about x and y: the direction that green has if the picture was turned. If they were exchanged, it has the
     // other one.
     std::optional<YAxis> turned_y = {};
     // With CheckOptions::marks. Where no texel spoke, the rule judges statistics of the whole map, the smaller levels

@@ -43,7 +43,7 @@ constexpr double kAboveAlphaShare = 0.002;
 constexpr double kAlphaCorrelation = 0.9;
 constexpr double kHalfAlphaShare = 0.01;
 constexpr double kExchangedMean = 0.4;
-// Of 315 real maps, 131 are found once x and y are exchanged: four of them with less than 0.3, 2.3 times and more what
+// 131 of 315 real maps are found once x and y are exchanged: four of them with less than 0.3, 2.3 times and more what
 // they have as stored. A smooth cone on one with flat facets has 0.25, 1.9 times.
 constexpr double kExchangedClearly = 0.3, kExchangedRatio = 2.2;
 constexpr double kExchangedZ = 0.2;
