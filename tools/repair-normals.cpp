@@ -146,10 +146,10 @@ void RepairNormals::report(cli::Job& job, const std::string& name, const Repaire
                   fmt::format("cannot be repaired: {} {}{}", left.rule->id, left.message, cli::manifest_words(fault)));
         break;
     }
-    for (const RepairStep& step : repaired.steps) {
-        const bool is_in_model = job.task.model != nullptr;
-        if (step.rule->id == "N220") job.warn(cli::inversion_words(is_in_model), is_in_model ? "" : name);
-    }
+    // Between two of them, other steps took it as it was.
+    const auto inversions = std::ranges::count_if(repaired.steps, [](const auto& s) { return s.rule->id == "N220"; });
+    const bool is_in_model = job.task.model != nullptr;
+    if (inversions % 2 == 1) job.warn(cli::inversion_words(is_in_model), is_in_model ? "" : name);
     const bool is_about_y =
         std::ranges::any_of(repaired.steps, [](const auto& step) { return is_about_green(*step.rule); });
     if (repairing_.names_mirrored() && !is_about_y && !repaired.after.y.y &&

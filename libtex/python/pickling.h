@@ -225,7 +225,7 @@ void each_part(Finding& o, F& f) {
         o.unit = kept_text(unit);
     }
     f(o.severity, o.message, o.figure, o.confidence, o.regions, o.has_texel, o.column, o.row, o.fix_harms, o.marks,
-      o.tone, o.tones);
+      o.tone, o.tones, o.turned_y);
 }
 
 template <class F>

@@ -53,6 +53,7 @@ py::dict describe(const RepairStep& step) {
         for (const ToneCurve& tone : *step.tones) tones.append(py::make_tuple(tone.black, tone.white, tone.gamma));
         facts["tones"] = tones;
     }
+    facts["y"] = step.y ? py::object(word_of(*step.y)) : py::object(py::none());
     facts["degrees"] = step.degrees;
     return facts;
 }

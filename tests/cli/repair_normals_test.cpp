@@ -212,6 +212,9 @@ TEST_F(RepairNormals, FoldersKeepTheirTreeOrAreRepairedInPlace) {
     EXPECT_EQ(bytes_of("art/deep/bgr.png"), clean_);
     EXPECT_NE(bytes_of("art/.git/bgr.png"), clean_);
     EXPECT_EQ(std::filesystem::last_write_time(scratch_.path("art/clean.png")), written);
+    const Ran packed = run(scratch_, "pack-normals", {"bgr.png", "--in-place"});
+    EXPECT_NE(packed.err.find("--in-place; repair-normals --in-place writes over its inputs"), std::string::npos)
+        << packed.err;
     const std::vector<std::vector<std::string>> refused = {{"bgr.png", "--in-place", "-o", "a.png"},
                                                            {"bgr.png", "--in-place", "--out-dir", "."},
                                                            {"-", "--in-place"},

@@ -26,6 +26,7 @@ constexpr ForeignOption kForeignOptions[] = {
     {"--output-dir --outdir --output-folder --out-folder --dest", "--out-dir"},
     {"-i --input --infile", "inputs are named without an option"},
     {"--inplace --overwrite -i", "--in-place"},
+    {"--in-place --inplace", "repair-normals --in-place writes over its inputs; here, -o or --out-dir names outputs"},
     {"-r -R --recursive --recurse", "--files-from, or a pattern such as 'art/**/*.png'"},
     {"-v", "--version, or --json for all that is known"},
     {"--verbose", "--json, which prints all that is known"},

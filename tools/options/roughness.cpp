@@ -256,8 +256,8 @@ void RoughnessOptions::check(const std::vector<Task>& tasks, int levels) const {
         }
         throw UsageError(
             printable(path),
-            is_in_place() ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, which "
-                                        "then holds what is kept, too",
+            is_in_place() ? fmt::format("{} files hold one level; give --roughness-out a .dds, .ktx2 or .exr, or a "
+                                        "name with {{level}}, which then holds what is kept, too",
                                         name_of(kContainerNames, container))
                           : fmt::format("{} files hold one level; --roughness-out takes a .dds, .ktx2 or .exr, which "
                                         "hold all, or a name with {{level}} for a file of each",

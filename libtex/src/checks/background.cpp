@@ -266,11 +266,12 @@ bool others_point_outwards(const StoredVectors& map, Extent extent, const Backgr
 
 // A short vector is no background if the others are short as well, as after a contrast: then it is one of them.
 bool are_others_as_short(const StoredVectors& map, Extent extent, const Background& background) {
-    constexpr float kLeast = 0.15f;  // shorter ones are as good as grey
-    constexpr double kAlike = 0.7;   // of their mean length
+    constexpr float kLeast = 0.15f;               // shorter ones are as good as grey
+    constexpr float kMost = kShortest + 0.0625f;  // `value` is that of a bin
+    constexpr double kAlike = 0.6;                // of their mean length
     const auto [x, y, z] = background.value;
     const float square = x * x + y * y + z * z;
-    if (!map.has_z() || square < kLeast * kLeast || square >= kShortest * kShortest || z < kLeast) return false;
+    if (!map.has_z() || square < kLeast * kLeast || square > kMost * kMost || z < kLeast) return false;
     double sum = 0.0;
     std::int64_t others = 0;
     for (int j = 0; j < extent.height; ++j) {
