@@ -268,7 +268,7 @@ bool others_point_outwards(const StoredVectors& map, Extent extent, const Backgr
 bool are_others_as_short(const StoredVectors& map, Extent extent, const Background& background) {
     constexpr float kLeast = 0.15f;               // shorter ones are as good as grey
     constexpr float kMost = kShortest + 0.0625f;  // `value` is that of a bin
-    constexpr double kAlike = 0.6;                // of their mean length
+    constexpr double kLeastOfMean = 0.6;          // of their mean length
     const auto [x, y, z] = background.value;
     const float square = x * x + y * y + z * z;
     if (!map.has_z() || square < kLeast * kLeast || square > kMost * kMost || z < kLeast) return false;
@@ -281,7 +281,7 @@ bool are_others_as_short(const StoredVectors& map, Extent extent, const Backgrou
             sum += std::sqrt(map.at(i, j).square());
         }
     }
-    return std::sqrt(square) * static_cast<double>(others) >= kAlike * sum;
+    return std::sqrt(square) * static_cast<double>(others) >= kLeastOfMean * sum;
 }
 
 // Whether alpha 0 hides texels: alpha is a cut-out, nearly 1 in half of the others or more, or no normals are below it.
